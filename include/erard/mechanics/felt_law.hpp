@@ -1,0 +1,67 @@
+// The felt law and its exact mean over a step.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "erard/model/contact.hpp"
+
+namespace erard {
+
+/// Elastic part k d^r, zero where the felt is not compressed [N].
+inline double elastic_force(const Felt& felt, double compression) noexcept {
+  return compression > 0 ? felt.stiffness * std::pow(compression, felt.exponent) : 0.0;
+}
+
+/// Force of a felt at one instant.
+///   F = k d^r + b d^2 d'                                                        thesis (4.4), (4.21)
+/// Departs from the thesis: 5.5.1 prints the damping with a minus sign; here d' > 0 means "compressing", so it is plus.
+/// Not clipped: it is the law of the felt's own coordinate, and a felt that is left alone opens at the rate at which
+/// it vanishes; it is the contact in series that cannot pull.
+/// @param compression d [m]; @param rate d' [m/s]; @return [N]
+inline double felt_force(const Felt& felt, double compression, double rate) noexcept {
+  if (compression <= 0) return 0;
+  return elastic_force(felt, compression) + felt.damping * compression * compression * rate;
+}
+
+/// Elastic energy k d^(r+1) / (r+1) [J].
+inline double felt_energy(const Felt& felt, double compression) noexcept {
+  return elastic_force(felt, compression) * compression / (felt.exponent + 1);
+}
+
+/// Mean force over a step and its slope.
+struct MeanForce {
+  double force = 0;  // [N]
+  double slope = 0;  // d force / d (compression at the end) [N/m]
+};
+
+/// Mean of the felt law along the straight path d_0 -> d_1 of one step.
+///   F = [E(d_1) - E(d_0)] / (d_1 - d_0) + b (d_1^3 - d_0^3) / (3 h),   E = k d^(r+1) / (r+1)
+/// The elastic part gives back over a closed path exactly what it took, whatever the step; evaluating the law at a
+/// point instead leaves 2.5 / 5.9 % error at 2 kHz where the mean leaves 2.0 / 4.9 %.
+/// Where the path is short against d the quotient cancels, and its Taylor series about the middle is used:
+///   E-quotient = F(m) + F''(m) s^2/24 + O(s^4),  s = d_1 - d_0 <= 1e-3 m  (relative error below 1e-13)
+/// @param start d_0 [m], @param end d_1 [m], @param time_step h [s]
+inline MeanForce mean_felt_force(const Felt& felt, double start, double end, double time_step) noexcept {
+  const double d0 = std::max(start, 0.0);
+  const double d1 = std::max(end, 0.0);
+  const double r = felt.exponent;
+  const double s = end - start;
+  const double middle = 0.5 * (d0 + d1);
+  MeanForce mean;
+  if (std::abs(s) <= 1e-3 * middle && start > 0 && end > 0) {
+    const double force = elastic_force(felt, middle);
+    const double bend = r * (r - 1) * force / (middle * middle);
+    mean.force = force + bend * s * s / 24;
+    mean.slope = 0.5 * r * force / middle + bend * s / 12;
+  } else if (s != 0) {
+    const double f1 = elastic_force(felt, d1);
+    mean.force = (f1 * d1 - elastic_force(felt, d0) * d0) / ((r + 1) * s);
+    mean.slope = (f1 - mean.force) / s;
+  }
+  mean.force += felt.damping * (d1 * d1 * d1 - d0 * d0 * d0) / (3 * time_step);
+  mean.slope += felt.damping * d1 * d1 / time_step;
+  return mean;
+}
+
+}  // namespace erard

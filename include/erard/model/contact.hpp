@@ -1,0 +1,57 @@
+// Where two bodies can touch, and what lies between them.
+#pragma once
+
+#include "erard/model/body.hpp"
+
+namespace erard {
+
+enum class ShapeKind {
+  circle,   // `radius` around `centre`
+  segment,  // straight, `half_length` to both sides of `centre`, thickened by the corner radius `radius`
+};
+
+/// A contact primitive in the frame of its body                                   thesis Figure 4.8
+/// A segment with radius 0 has sharp ends; with a radius it is a capsule, the jack's top: the core is what
+/// `half_length` measures, so the whole is 2 (half_length + radius) long. Its distance is two-sided.
+struct Shape {
+  ShapeKind kind = ShapeKind::circle;
+  Vector2 centre = Vector2::Zero();  // [m]
+  double direction = 0;              // of a segment [rad]
+  double half_length = 0;            // of a segment, corners excluded [m]
+  double radius = 0;                 // of the circle (> 0), or of the corners of a segment (>= 0) [m]
+};
+
+/// Which way a felt gives.
+enum class FeltAxis {
+  contact_normal,  // along the common normal, turning with it; reproduces a compliant contact to 0.06-0.28 %
+  fixed,           // along `direction` of the carrier's frame; moves the finger force by 1.5-3.9 % in the grand action
+};
+
+/// A felt: a light body on a slide of the body that carries it, with one coordinate, its compression d >= 0.
+///   F = k d^r + b d^2 d'                                                        thesis (4.4), 5.4.2
+struct Felt {
+  double stiffness = 0;  // k [N/m^r]
+  double exponent = 1;   // r >= 1 [-]
+  double damping = 0;    // b [N s/m^3]
+  double mass = 0;       // of the part that moves [kg]; belongs to the carrier's total
+  bool is_carried_by_a = true;
+  FeltAxis axis = FeltAxis::contact_normal;
+  double direction = 0;  // of a fixed axis: outwards, from the carrier to the other body, in the carrier's frame [rad]
+};
+
+/// Contact between a primitive of body A and one of body B: Signorini along the normal, Coulomb along the tangent.
+/// At least one of the two shapes is a circle.
+struct Contact {
+  Name name;
+  int body_a = kGround;
+  int body_b = kGround;
+  Shape shape_a;
+  Shape shape_b;
+  double friction = 0;     // mu >= 0 [-]                                          thesis (4.7), nu in Table 4.5
+  double restitution = 0;  // e in [0, 1], of the normal velocity at an impact without felt [-]     thesis 6.2.2
+  bool has_felt = false;
+  Felt felt;
+  bool is_active = true;  // taken out of play by --without
+};
+
+}  // namespace erard
