@@ -1,0 +1,240 @@
+// Friction that holds, contacts that close, energy that never grows: the non-smooth laws on small mechanisms.
+#include <gtest/gtest.h>
+
+#include "support/models.hpp"
+
+namespace erard {
+namespace {
+
+Scheme scheme_of(double h, double theta) {
+  Scheme scheme;
+  scheme.time_step = h;
+  scheme.theta = theta;
+  return scheme;
+}
+
+TEST(Friction, HammerHeldByItsHingeDoesNotCreepInAMinute) {
+  // thesis values of the hammer: m g l sin(angle) = 0.0133 N m sin(0.05) < c_d = 1.01e-3 N m
+  Model model = test::pendulum(0.0125233504, 0.1083, 0.05);
+  model.bodies[0].dry = 1.01143156e-3;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 5e-4);
+  double fastest = 0;
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 60, state,
+                 [&](const StepReport&, const State& s) { fastest = std::max(fastest, std::abs(s.v[0])); });
+  EXPECT_LT(fastest, 1e-12);
+  EXPECT_NEAR(state.x[0], 0.05, 1e-12);
+}
+
+TEST(Friction, HammerBeyondItsBandFalls) {
+  Model model = test::pendulum(0.0125233504, 0.1083, 0.08);  // 0.0133 sin(0.08) > c_d
+  model.bodies[0].dry = 1.01143156e-3;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 5e-4);
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 0.1, state);
+  EXPECT_LT(state.x[0], 0.0799);
+}
+
+TEST(Friction, SwingingPendulumStopsAndStaysStopped) {
+  // Upsilon = 2 of thesis 5.1.2: theta'' + Y^2 sign theta' + 4 pi^2 sin theta = 0; exact sticking angle 0.068466085
+  const double w2 = 4 * M_PI * M_PI;
+  Model model = test::pendulum(1, 1, 1.0);
+  model.gravity = {0, -w2};
+  model.bodies[0].dry = 4;
+  const Mechanism mechanism = build_mechanism(model);
+  Scheme scheme = scheme_of(1e-3, 0.5);
+  State state = rest_state(mechanism, 1e-3);
+  test::run_free(mechanism, scheme, 3, state);
+  // the last swing ends within one step of its turning point: error of the order h v, v < Y^2 h
+  EXPECT_NEAR(state.x[0], 0.068466085, 2e-5);
+  const double stuck = state.x[0];
+  double fastest = 0;
+  test::run_free(mechanism, scheme, 60, state,
+                 [&](const StepReport&, const State& s) { fastest = std::max(fastest, std::abs(s.v[0])); });
+  EXPECT_LE(fastest, 1e-15);
+  EXPECT_EQ(state.x[0], stuck);
+}
+
+TEST(Friction, BlockJustBelowItsFrictionAngleStays) {
+  for (const double theta : {0.5, 1.0}) {
+    const Model model = test::block_on_slope(0.2, std::atan(0.3) - 1e-4, 0.3);
+    const Mechanism mechanism = build_mechanism(model);
+    State state = rest_state(mechanism, 5e-4);
+    double fastest = 0;
+    test::run_free(mechanism, scheme_of(5e-4, theta), 60, state, [&](const StepReport&, const State& s) {
+      if (s.time > 0.01) fastest = std::max(fastest, s.v.cwiseAbs().maxCoeff());
+    });
+    EXPECT_LT(fastest, 1e-12) << "theta " << theta;
+    EXPECT_NEAR(state.x[0], 0, 1e-9) << "theta " << theta;  // rounding of the start position, nothing else
+  }
+}
+
+TEST(Friction, BlockAboveItsFrictionAngleSlidesAsCoulombSays) {
+  const double slope = 0.5, mu = 0.3;
+  const Model model = test::block_on_slope(0.2, slope, mu);
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 5e-4);
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 0.5, state);
+  const double travelled = 0.5 * 9.81 * (std::sin(slope) - mu * std::cos(slope)) * 0.25;
+  // one step at the start may go either way: h v_end
+  EXPECT_NEAR(state.x[0] / std::cos(slope), travelled, 5e-4 * 1.1);
+}
+
+TEST(RigidContact, RestingBlockNeitherSinksNorHops) {
+  for (const double theta : {0.5, 0.7, 1.0}) {
+    const Mechanism mechanism = build_mechanism(test::block_on_slope(0.2, 0, 0));
+    State state = rest_state(mechanism, 5e-4);
+    double deepest = 0, highest = 0;
+    test::run_free(mechanism, scheme_of(5e-4, theta), 60, state, [&](const StepReport&, const State& s) {
+      deepest = std::min(deepest, s.x[1] - 0.01);
+      highest = std::max(highest, s.x[1] - 0.01);
+    });
+    EXPECT_GT(deepest, -1e-12) << "theta " << theta;
+    EXPECT_LT(highest, 1e-9) << "theta " << theta;
+  }
+}
+
+TEST(RigidContact, FallingBallStopsWithoutPenetration) {
+  const Mechanism mechanism = build_mechanism(test::falling_ball(0.2, 0.1, 0));
+  State state = rest_state(mechanism, 5e-4);
+  double deepest = 0;
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 0.5, state,
+                 [&](const StepReport&, const State& s) { deepest = std::min(deepest, s.x[1] - 0.01); });
+  EXPECT_GT(deepest, -1e-12);
+  EXPECT_NEAR(state.x[1], 0.01, 1e-9);
+  EXPECT_EQ(state.v[1], 0);
+}
+
+TEST(RigidContact, RestitutionReturnsItsShareOfTheSpeed) {
+  const double height = 0.1, e = 0.6, h = 1e-4;
+  const Mechanism mechanism = build_mechanism(test::falling_ball(0.2, height, e));
+  State state = rest_state(mechanism, h);
+  double highest_after = 0;
+  bool has_hit = false;
+  test::run_free(mechanism, scheme_of(h, 0.5), 0.28, state, [&](const StepReport&, const State& s) {
+    has_hit = has_hit || s.v[1] > 0;
+    if (has_hit) highest_after = std::max(highest_after, s.x[1] - 0.01);
+  });
+  EXPECT_TRUE(has_hit);
+  EXPECT_NEAR(highest_after, e * e * height, 2 * h * std::sqrt(2 * 9.81 * height));  // the impact is known to one step
+}
+
+TEST(RigidContact, BouncesDieOut) {
+  const Mechanism mechanism = build_mechanism(test::falling_ball(0.2, 0.05, 0.7));
+  State state = rest_state(mechanism, 5e-4);
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 3, state);
+  EXPECT_LT(std::abs(state.v[1]), 2 * 9.81 * 5e-4);  // what one step of gravity gives
+  EXPECT_LT(state.x[1] - 0.01, 1e-5);
+}
+
+TEST(FeltContact, BallOnFeltFindsItsStaticCompression) {
+  const double mass = 0.2;
+  const Mechanism mechanism = build_mechanism(test::ball_on_felt(mass, 0));
+  State state = rest_state(mechanism, 1.25e-4);
+  test::run_free(mechanism, test::default_scheme(), 5, state);
+  const double expected = std::pow((mass) * 9.81 / 1.6e10, 1 / 2.7);  // k d^r = m g
+  EXPECT_NEAR(state.x[2], expected, 1e-4 * expected);
+}
+
+TEST(FeltContact, HitWithoutLossesGivesTheSpeedBack) {
+  Model model = test::ball_on_felt(0.06, 0.05);
+  model.contacts[0].felt.damping = 0;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 1e-5);
+  Scheme scheme = scheme_of(1e-5, 0.5);
+  double up = 0;
+  test::run_free(mechanism, scheme, 0.13, state, [&](const StepReport&, const State& s) { up = std::max(up, s.v[1]); });
+  // lost: the felt's own mass (1.5e-5 of 0.06 kg) at closing and opening
+  EXPECT_NEAR(up, std::sqrt(2 * 9.81 * 0.05), 1e-3);
+}
+
+TEST(FeltContact, DampedHitLosesWhatTheLawTakes) {
+  // independent: the same impact by RK4 on  m x'' = -m g + k d^r + b d^2 d',  d = -x, contact while the force is positive
+  const double mass = 0.0126, k = 1.6e10, r = 2.7, b = 5e7, h = 1e-7;
+  double x = 0, v = -1.5;
+  const auto acceleration = [&](double position, double rate) {
+    const double d = -position;
+    return d > 0 ? std::max(0.0, k * std::pow(d, r) - b * d * d * rate) / mass - 9.81 : -9.81;
+  };
+  do {
+    const double a1 = acceleration(x, v), v2 = v + 0.5 * h * a1, a2 = acceleration(x + 0.5 * h * v, v2);
+    const double v3 = v + 0.5 * h * a2, a3 = acceleration(x + 0.5 * h * v2, v3), v4 = v + h * a3;
+    const double a4 = acceleration(x + h * v3, v4);
+    x += h * (v + 2 * v2 + 2 * v3 + v4) / 6;
+    v += h * (a1 + 2 * a2 + 2 * a3 + a4) / 6;
+  } while (v < 0 || acceleration(x, v) > -9.81);
+
+  Model model = test::ball_on_felt(mass, 0);
+  model.contacts[0].felt.mass = 1e-6;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 1e-5);
+  state.v[1] = -1.5;
+  double up = 0;
+  test::run_free(mechanism, scheme_of(1e-5, 0.5), 0.01, state,
+                 [&](const StepReport&, const State& s) { up = std::max(up, s.v[1]); });
+  EXPECT_NEAR(up, v, 2e-3 * v);
+}
+
+TEST(FeltContact, KeepsItsHistory) {
+  // pressed and left alone, a felt recovers no faster than its law lets it: d' = -(k / b) d^(r - 2)
+  Model model = test::ball_on_felt(0.2, 1.0);
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 1.25e-5);
+  state.x[2] = 3e-4;  // compressed, nothing touches it
+  double d = 3e-4;
+  const double h = 1.25e-5;
+  Workspace work;
+  for (int i = 0; i < 20; ++i) {
+    step(mechanism, scheme_of(h, 0.5), {}, state, work);
+    for (int j = 0; j < 100; ++j) d -= 0.01 * h * 1.6e10 / 5e7 * std::pow(d, 0.7);
+  }
+  EXPECT_GT(state.x[2], 0.2 * 3e-4);
+  EXPECT_NEAR(state.x[2], d, 0.05 * 3e-4);  // the law without mass; 15 mg and the step of 12.5 us delay it
+}
+
+TEST(FeltContact, FreeFeltComesToItsStopAndStays) {
+  const Mechanism mechanism = build_mechanism(test::ball_on_felt(0.2, 1.0));
+  State state = rest_state(mechanism, 1.25e-4);
+  state.x[2] = 3e-4;
+  double lowest = 1;
+  test::run_free(mechanism, test::default_scheme(), 0.3, state,
+                 [&](const StepReport&, const State& s) { lowest = std::min(lowest, s.x[2]); });
+  EXPECT_GE(lowest, -1e-15);
+  EXPECT_LT(state.x[2], 1e-5);
+}
+
+TEST(Energy, NeverGrowsInABouncingBallOnFelt) {
+  const Mechanism mechanism = build_mechanism(test::ball_on_felt(0.06, 0.05));
+  for (const double h : {5e-4, 1.25e-4}) {
+    State state = rest_state(mechanism, h);
+    const double start = measure_energy(mechanism, state).total();
+    double most = -1;
+    test::run_free(mechanism, scheme_of(h, 0.5), 2, state, [&](const StepReport&, const State& s) {
+      most = std::max(most, measure_energy(mechanism, s).total() - start);
+    });
+    EXPECT_LE(most, 1e-12);
+  }
+}
+
+TEST(Scheme, ImplicitEulerDampsTheFrontRailWhereTheMiddleDoesNot) {
+  // a 62 g mass on a linear spring of 100 Hz, one period at 2 kHz: theta 1 leaves (1 + (w h)^2)^(-20/2)
+  const double w = 2 * M_PI * 100, h = 5e-4;
+  Model model;
+  model.gravity = {0, 0};
+  model.body_count = 1;
+  model.bodies[0].joint = JointKind::prismatic;
+  model.bodies[0].mass = 0.062;
+  model.bodies[0].spring.stiffness = 0.062 * w * w;
+  model.bodies[0].initial = 1e-3;
+  const Mechanism mechanism = build_mechanism(model);
+  const auto amplitude = [&](double theta) {
+    State state = rest_state(mechanism, h);
+    test::run_free(mechanism, scheme_of(h, theta), 0.01, state);
+    return std::hypot(state.x[0], state.v[0] / w) / 1e-3;
+  };
+  EXPECT_NEAR(amplitude(1.0), std::pow(1 + w * w * h * h, -10), 1e-9);  // 39 %
+  EXPECT_NEAR(amplitude(0.5), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace erard
