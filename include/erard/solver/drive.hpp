@@ -1,6 +1,8 @@
 // What moves the mechanism during one step.
 #pragma once
 
+#include <cmath>
+
 namespace erard {
 
 enum class DriveKind {
@@ -21,5 +23,10 @@ struct Drive {
   DriveSample from;  // at the start of the step
   DriveSample to;    // at its end
 };
+
+inline bool is_finite(const Drive& drive) noexcept {
+  return std::isfinite(drive.from.value) && std::isfinite(drive.from.rate) && std::isfinite(drive.to.value) &&
+         std::isfinite(drive.to.rate);
+}
 
 }  // namespace erard

@@ -10,7 +10,7 @@ struct Scheme {
   int newton_limit = 12;            // linearisations a step, at most
   double newton_tolerance = 1e-4;   // change of the end velocity in the energy norm, relative [-]
   int sweep_limit = 200;            // Gauss-Seidel sweeps a linearisation, at most
-  double sweep_tolerance = 1e-7;    // change of a row in one sweep, relative to the free velocities of its unit [-]
+  double sweep_tolerance = 1e-6;    // change of a row in one sweep, relative to the free velocities of its unit [-]
 };
 
 }  // namespace erard

@@ -9,7 +9,7 @@ namespace erard {
 enum class StepStatus {
   converged,
   not_converged,  // an iteration limit was reached; the state is the best found and goes on
-  not_finite,     // a number is not finite; the state is left as it was
+  not_finite,     // a number of the input or the result is not finite; the state is left as it was
 };
 
 struct StepReport {
@@ -155,6 +155,10 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
 inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
                        State& state, Workspace& work) noexcept {
   StepReport report;
+  if (!is_finite(drive)) {
+    report.status = StepStatus::not_finite;
+    return report;
+  }
   predict(mechanism, drive, state, work);
   bool is_done = false;
   while (!is_done && report.linearisations < scheme.newton_limit) {
