@@ -57,8 +57,8 @@ class Keystroke {
 Keystroke read_keystroke(const std::filesystem::path& file);
 
 /// Writes a file that read_keystroke() reads back bit for bit, with `comments` as `#` lines on top. A reader never meets
-/// half a file: the text goes to a temporary name beside `file`, which is then renamed.
-/// Throws std::runtime_error, one sentence, when the file cannot be written.
+/// half a file (see OutputFile).
+/// Throws InputError when the file cannot be created, std::runtime_error when it cannot be finished.
 void write_keystroke(const std::filesystem::path& file, const Keystroke& keystroke,
                      std::span<const std::string> comments = {});
 
