@@ -75,7 +75,7 @@ class EventDetector {
     hammer_speed_ = roles_.hammer == kGround ? 0.0 : hammer_radius_ * std::abs(hammer_rate(state));
   }
 
-  /// Ends the run: a slow press without impact gets its escapement here.
+  /// Ends the run: a press that did not reach the string gets its escapement here, the last one it had.
   void finish() noexcept { settle_escapement(); }
 
   int count() const noexcept { return count_ < kCapacity ? count_ : kCapacity; }
@@ -124,24 +124,27 @@ class EventDetector {
     ++count_;
   }
 
+  /// The next strike begins with the first sign of it after the jack returned.
   void begin_strike_if_rearmed() noexcept {
     if (!is_rearmed_) return;
+    settle_escapement();
     ++strike_;
-    is_rearmed_ = has_let_off_ = has_rail_ = has_impact_ = is_check_due_ = has_left_rest_ = was_aside_ = false;
-    is_return_due_ = is_ready_due_ = has_escaped_ = false;
+    is_rearmed_ = has_let_off_ = has_rail_ = has_impact_ = is_check_due_ = false;
+    is_return_due_ = is_ready_due_ = has_left_rest_ = was_aside_ = false;
   }
 
   void see_descent(const Sight& now, const Event& here) noexcept {
-    if (now.let_off && !has_let_off_) {
+    if (now.let_off && (!has_let_off_ || is_rearmed_)) {
       begin_strike_if_rearmed();
       has_let_off_ = is_return_due_ = is_ready_due_ = true;
       add(here, EventKind::jack_meets_let_off);
     }
-    if (has_let_off_ && !has_impact_ && !is_rearmed_ && before_.escapement && !now.escapement) {
+    // the last loss of contact while the jack is out; of a press so slow that it keeps in touch, the last one later
+    if (has_let_off_ && !has_impact_ && !is_escape_settled_ && before_.escapement && !now.escapement) {
       escapement_ = here;
       has_escaped_ = true;
     }
-    if (now.front_rail && !has_rail_) {
+    if (now.front_rail && (!has_rail_ || is_rearmed_)) {
       begin_strike_if_rearmed();
       has_rail_ = true;
       add(here, EventKind::key_meets_front_rail);
@@ -162,26 +165,26 @@ class EventDetector {
     }
   }
 
+  /// After an impact the return counts from 5 ms on; without one, once the jack has been aside.
   void see_return(const Sight& now, const Event& here, bool is_under) noexcept {
     if (has_let_off_ && !now.jack_rest) has_left_rest_ = true;
     if (has_let_off_ && !is_under) was_aside_ = true;
-    const bool is_over = has_impact_ ? here.time >= last_impact_ + kReturnDelay : has_escaped_;
+    const bool is_over = !has_impact_ || here.time >= last_impact_ + kReturnDelay;
     if (is_ready_due_ && is_over && was_aside_ && is_under) {
       is_ready_due_ = false;
       add(here, EventKind::repetition_ready);
     }
-    if (is_return_due_ && is_over && has_left_rest_ && now.jack_rest && !now.let_off) {
-      settle_escapement();
+    if (is_return_due_ && is_over && was_aside_ && has_left_rest_ && now.jack_rest && !now.let_off) {
       is_return_due_ = false;
       is_rearmed_ = true;
-      has_let_off_ = has_rail_ = false;
+      is_escape_settled_ = has_escaped_;
       add(here, EventKind::jack_returned);
     }
   }
 
   void settle_escapement() noexcept {
     if (has_escaped_ && !has_impact_) add(escapement_, EventKind::escapement);
-    has_escaped_ = false;
+    has_escaped_ = is_escape_settled_ = false;
   }
 
   const Mechanism* mechanism_;
@@ -197,6 +200,7 @@ class EventDetector {
   double last_impact_ = -1;     // [s]
   Event escapement_;            // the last candidate
   bool has_let_off_ = false, has_rail_ = false, has_impact_ = false, has_escaped_ = false;
+  bool is_escape_settled_ = false;
   bool is_check_due_ = false, is_return_due_ = false, is_ready_due_ = false;
   bool has_left_rest_ = false, was_aside_ = false, is_rearmed_ = false;
 };

@@ -107,7 +107,8 @@ inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme,
 }
 
 /// Mean force of the finger over the step, positive when it presses                             thesis 6, (5.30)
-/// `piston`: impulse of its row; `key`: what the equation of motion of the prescribed coordinate lacks.
+/// `piston`: impulse of its row; `key`: what the equation of motion of the prescribed coordinate lacks. The dry friction
+/// of its own hinge is part of that: against the rate, and of a key that is held still as much as it can take over.
 inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
                            const Workspace& work) noexcept {
   const double h = scheme.time_step;
@@ -117,6 +118,9 @@ inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, con
     double lacking = work.smooth_residual[finger.body];
     for (int i = 0; i < work.row_count; ++i)
       lacking -= work.all_directions(finger.body, work.row[i]) * work.impulse[i];
+    const double dry = mechanism.model.bodies[finger.body].dry * h;
+    const double rate = work.end_velocity[finger.body];
+    lacking += rate > 0 ? dry : rate < 0 ? -dry : -std::clamp(lacking, -dry, dry);
     return -lacking / (finger.arm * h);
   }
   for (int i = 0; i < work.row_count; ++i)
