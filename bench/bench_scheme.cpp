@@ -12,6 +12,7 @@
 
 #include "erard/device/config_dir.hpp"
 #include "erard/device/results.hpp"
+#include "erard/mechanics/rest.hpp"
 
 namespace {
 
@@ -52,6 +53,40 @@ Error error_of(const ForceCurve& ours, const ForceCurve& truth, double end) {
   return error;
 }
 
+/// The action with the felts of these contacts on axes fixed in their carriers, along the normal at rest.
+ActionFile fix_axes(ActionFile action, const std::vector<std::string>& names) {
+  const Mechanism mechanism = build_mechanism(action.model);
+  const State rest = rest_state(mechanism, 1e-4);
+  Frames frames;
+  ContactFrames contacts;
+  place_bodies(action.model, rest.x, frames);
+  locate_contacts(mechanism, rest.x, frames, contacts);
+  for (const std::string& name : names) {
+    const auto c = static_cast<std::size_t>(find_contact(action.model, name));
+    Contact& contact = action.model.contacts[c];
+    const Vector2 outwards = -contacts[c].felt_slide;
+    contact.felt.axis = FeltAxis::fixed;
+    contact.felt.direction = std::atan2(outwards.y(), outwards.x()) - frames.of(carrier(contact)).angle;
+  }
+  return action;
+}
+
+void print_axes(const ActionFile& action) {
+  const std::vector<std::string> all{"KS+", "KW", "KS-", "KH", "WJ", "WL", "JG", "JL", "JH", "LG", "LH", "HG"};
+  std::vector<std::string> all_but_knuckle = all;
+  std::erase(all_but_knuckle, "JH");
+  fmt::print("\n| felts on axes fixed in their carriers | piano, eta % | forte, eta % |\n|---|---|---|\n");
+  for (const auto& [label, names] : {std::pair{"all", all}, {"all but JH", all_but_knuckle}, {"JH alone", {"JH"}}, {"KW alone", {"KW"}}}) {
+    fmt::print("| {} |", label);
+    for (const auto& [name, release] : {std::pair{"piano", 0.220}, {"forte", 0.142}}) {
+      const Keystroke keystroke = read_keystroke(config_dir() / "keystrokes" / (std::string(name) + ".csv"));
+      const ForceCurve normal = play(action, keystroke, 0.5, 16).force;
+      fmt::print(" {:.2f} |", 100 * relative_error(normal, play(fix_axes(action, names), keystroke, 0.5, 16).force, release));
+    }
+    fmt::print("\n");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,4 +108,5 @@ int main(int argc, char** argv) {
                    1e6 * played.result.computing_time / static_cast<double>(played.result.periods));
       }
   }
+  print_axes(action);
 }

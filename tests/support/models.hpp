@@ -103,7 +103,7 @@ inline void run_free(const Mechanism& mechanism, const Scheme& scheme, double du
 /// Internal steps of the default tick, 0.125 ms.
 inline Scheme default_scheme() {
   TickSettings settings;
-  settings.set_rate(2000, settings.substeps);
+  settings.set_rate(2000);
   return settings.scheme;
 }
 

@@ -26,7 +26,7 @@ inline Keystroke keystroke(const std::string& name) {
 inline TickSettings default_tick(DriveKind drive = DriveKind::piston) {
   TickSettings settings;
   settings.drive = drive;
-  settings.set_rate(2000, settings.substeps);
+  settings.set_rate(2000);
   return settings;
 }
 
