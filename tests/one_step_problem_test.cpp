@@ -1,7 +1,7 @@
 // The one-step problems of real strokes: solved to the end, and against an exact method.
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <algorithm>
 #include <random>
 
 #include "support/lemke.hpp"
@@ -94,6 +94,19 @@ TEST(OneStepProblem, DelassusOperatorIsSymmetricButForTheFelts) {
       for (int j = 0; j < p.problem.size; ++j)
         // an unloaded felt hangs on its carrier by its mass alone: sqrt(15 mg / 5 g), the jack's at its toe
         EXPECT_NEAR(W(i, j), W(j, i), 0.06 * std::sqrt(W(i, i) * W(j, j)));
+  }
+}
+
+TEST(OneStepProblem, DefaultLimitLeavesSmallResiduals) {
+  for (const char* name : {"piano", "forte", "repetition"}) {
+    std::vector<double> residuals;
+    for (const Problem& p : collect(name, 1)) residuals.push_back(residual(p.problem, p.impulse));
+    std::sort(residuals.begin(), residuals.end());
+    const auto quantile = [&](double q) { return residuals[static_cast<std::size_t>(q * static_cast<double>(residuals.size() - 1))]; };
+    EXPECT_LT(quantile(0.99), 1e-6) << name;  // what the sweeps are asked for
+    EXPECT_LT(quantile(1), 1e-3) << name;     // jammed states that reach the limit
+    std::printf("%s: residual median %.1e, 99 %% %.1e, 99.9 %% %.1e, largest %.1e of %zu problems\n", name, quantile(0.5),
+                quantile(0.99), quantile(0.999), quantile(1), residuals.size());
   }
 }
 
