@@ -100,7 +100,7 @@ TEST(ErardSim, OptionsOutOfRangeAreToldInOneSentence) {
   expect_one_sentence(run_program("erard-sim --rate 0"), {"--rate", "400 to 50000"});
   expect_one_sentence(run_program("erard-sim --rate nan"), {"--rate", "nan"});
   expect_one_sentence(run_program("erard-sim --rate fast"), {"--rate", "fast"});
-  expect_one_sentence(run_program("erard-sim --substeps 0"), {"--substeps", "1 - 1000"});
+  expect_one_sentence(run_program("erard-sim --substeps 0"), {"--substeps", "1 to 1000"});
   expect_one_sentence(run_program("erard-sim --duration -1"), {"--duration"});
   expect_one_sentence(run_program("erard-sim --duration inf"), {"--duration"});
   expect_one_sentence(run_program("erard-sim --damper maybe"), {"--damper", "maybe"});
