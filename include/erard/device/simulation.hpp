@@ -21,6 +21,8 @@ struct Snapshot {
   std::vector<double> rate;      // of the same [rad/s] or [m/s]
   std::vector<double> compression;  // of each contact; minus the gap when open, 0 when out of play [m]
   std::vector<double> normal;       // reaction of each contact, mean over the last internal step [N]
+  std::vector<double> tangential;   // friction of the same, on body B along perp(normal); 0 without friction [N]
+  std::vector<double> hinge_moment;  // dry friction of each body's joint, at most c_d [N m] or [N]
 };
 
 struct RunSettings {

@@ -17,7 +17,7 @@ struct StepReport {
   int linearisations = 0;
   int sweeps = 0;             // of all linearisations
   double newton_change = 0;   // of the last linearisation, relative, energy norm [-]
-  double sweep_change = 0;    // of the last sweep, relative [-]
+  double sweep_error = 0;     // of the last sweeps: change or residual, relative [-]
   double finger_force = 0;    // mean over the step, positive when the finger presses [N]
 };
 
@@ -165,6 +165,7 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
   }
   predict(mechanism, drive, state, work);
   bool is_done = false;
+  bool is_swept = false;
   while (!is_done && report.linearisations < scheme.newton_limit) {
     ++report.linearisations;
     linearise(mechanism, scheme, drive, state, work);
@@ -172,12 +173,13 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     assemble_problem(mechanism, scheme, drive, state, work);
     const SweepReport swept = solve_rows(scheme, work);
     report.sweeps += swept.sweeps;
-    report.sweep_change = swept.last_change;
+    is_swept = swept.is_converged;
+    report.sweep_error = swept.error;
     report.newton_change = update_velocity(mechanism, scheme, work);
     const bool is_complete = !find_violations(mechanism, scheme, state, work);
     is_done = is_complete && report.newton_change <= scheme.newton_tolerance;
   }
-  if (!is_done || report.sweep_change > scheme.sweep_tolerance) report.status = StepStatus::not_converged;
+  if (!is_done || !is_swept) report.status = StepStatus::not_converged;
   accept(mechanism, scheme, drive, state, work, report);
   return report;
 }
