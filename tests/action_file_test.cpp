@@ -129,7 +129,7 @@ TEST(ActionFile, BadFilesAreRefusedInOneSentenceWithTheirPlace) {
   const std::string good = test::read_text(kGrandAction);
   const std::vector<BadFile> cases{
       {"missing key", "      inertia: I_W\n", "", "    W:\n", {"inertia", "missing", "bodies W"}},
-      {"misspelt key", "      inertia: I_W\n", "      inertai: I_W\n", "    W:\n", {"inertia is missing", "did you mean inertai"}},
+      {"misspelt key", "      inertia: I_W\n", "      inertai: I_W\n", "inertai: I_W", {"inertai is not known", "did you mean inertia?"}},
       {"unknown key", "      what: whippen\n", "      what: whippen\n      colour: I_W\n", "colour: I_W", {"colour", "not known"}},
       {"doubled key", "      inertia: I_W\n", "      inertia: I_W\n      inertia: I_K\n", "inertia: I_K\n      viscous: c_vW", {"inertia", "twice"}},
       {"unknown section", "mechanism:\n", "machine: {}\nmechanism:\n", "machine:", {"machine", "not known"}},
@@ -156,6 +156,10 @@ TEST(ActionFile, BadFilesAreRefusedInOneSentenceWithTheirPlace) {
       {"its own parent", "      what: whippen\n      parent: S\n", "      what: whippen\n      parent: W\n", "parent: W\n      joint: hinge\n      origin: [W_O", {"parent = W", "declared above"}},
       {"unknown joint", "      what: whippen\n      parent: S\n      joint: hinge\n", "      what: whippen\n      parent: S\n      joint: ball\n", "joint: ball", {"joint = ball", "hinge, prismatic"}},
       {"unknown event", "{let_off: JG,", "{letoff: JG,", "events:", {"letoff", "did you mean let_off"}},
+      {"jack with less inertia than its mass has", "J_Gy: {value: 0,", "J_Gy: {value: 0.03,", "I_J:", {"I_J = 1.5e-06", "at least"}},
+      {"damper contact elsewhere", "contacts: [KD, DG]", "contacts: [KD, HG]", "damper:", {"HG", "contacts of its body"}},
+      {"hammer that never meets the string", "hammer: H}", "hammer: L}", "events:", {"hammer = L", "HG"}},
+      {"name too long", "name: grand action", "name: the grand action of 1821", "name: the grand", {"name", "at most 15"}},
       {"event of no contact", "{let_off: JG,", "{let_off: JX,", "{let_off: JX", {"let_off = JX", "must be a contact"}},
   };
   const test::TemporaryFolder folder;
@@ -191,13 +195,20 @@ TEST(ActionFile, FilesThatAreNoActionsAreRefusedInOneSentence) {
   refuse(std::string("\x7f""ELF\x02\x01\x00\x00", 8), "not text");
   refuse("a: [1, 2\nb: {c", "not valid YAML");
   refuse("\t\t: : :", "");
-  // cut anywhere, it is refused and nothing else
-  for (std::size_t cut = 0; cut + 10 < good.size(); cut += 997) {
+  refuse(good + "\n---\na: 1\n", "second YAML document");
+  // cut after any line, it is refused: the sections that may be left out stand first
+  for (std::size_t cut = 0; cut + 10 < good.size(); cut = good.find('\n', cut) + 1) {
     test::write_text(folder / "cut.yaml", good.substr(0, cut));
     const std::string said = complaint_of(folder / "cut.yaml");
     EXPECT_NE(said, "(accepted)") << cut;
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   }
+}
+
+TEST(ActionFile, SettingsMustBeFinite) {
+  ActionOptions options;
+  options.settings = {{"S_Jy", std::nan("")}};
+  EXPECT_NE(complaint_of(kGrandAction, options).find("--set S_Jy=nan: must be a finite number"), std::string::npos);
 }
 
 TEST(ActionFile, PlacesThatAreNoFilesAreRefused) {

@@ -23,8 +23,11 @@ std::string read_text(const std::filesystem::path& path) {
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > kMaxBytes) throw InputError(fmt::format("{}: does not end, must be at most {} MiB", path.string(), kMaxBytes >> 20));
   int line = 1;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (c == '\n') ++line;
+    if (c == '\n' && text.compare(i + 1, 3, "---") == 0)
+      throw InputError(fmt::format("{}:{}: a second YAML document begins, must hold one", path.string(), line));
     if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t')
       throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not text, must be an action file (YAML)", path.string(), line,
                                    static_cast<unsigned char>(c)));
@@ -47,7 +50,10 @@ class Builder {
   Builder(Parameters& parameters, const ActionOptions& options) : parameters_(parameters), options_(options) {}
 
   ActionFile build(YamlSection mechanism) {
-    file_.model.name = Name(mechanism.word("name"));
+    const std::string name = mechanism.word("name");
+    if (name.size() > Name::kCapacity)
+      mechanism.reject(mechanism.line("name"), fmt::format("name = {}, must have at most {} letters", printable(name), Name::kCapacity));
+    file_.model.name = Name(name);
     file_.model.gravity = {0, -number(mechanism, "gravity", "m/s^2", Rule::not_negative)};
     read_bodies(mechanism.section("bodies"));
     if (mechanism.optional("contacts")) read_contacts(mechanism.section("contacts"));
@@ -136,6 +142,10 @@ class Builder {
       body.initial = number(section, "initial_angle", "rad", Rule::any) - absolute_angle(body.parent);
     else
       body.initial = number(section, "initial_position", "m", Rule::any);
+    // on the ground only the inertia about the hinge counts; what is carried must be a possible distribution of mass
+    if (is_hinge && body.parent != kGround && body.inertia < body.mass * body.centre.squaredNorm())
+      parameters_.reject(section.word("inertia"), fmt::format("must be at least m |G|^2 = {:.4g} kg m^2 of body {}",
+                                                              body.mass * body.centre.squaredNorm(), name));
     section.finish();
     return body;
   }
@@ -248,6 +258,8 @@ class Builder {
     if (damper == kGround) section.reject(section.line("body"), "body = S in damper, must be a body that moves");
     for (const std::string& name : section.words("contacts")) {
       Contact& part = file_.model.contacts[static_cast<std::size_t>(contact(section, "contacts", name))];
+      if (part.body_a != damper && part.body_b != damper)
+        section.reject(section.line("contacts"), fmt::format("contacts = {} in damper, must be contacts of its body", name));
       part.is_active = options_.damper;
     }
     file_.model.bodies[static_cast<std::size_t>(damper)].is_held = !options_.damper;
@@ -261,6 +273,12 @@ class Builder {
                                     {"backcheck", &roles.backcheck}, {"jack_rest", &roles.jack_rest}})
       if (section.optional(key)) *role = contact(section, key, section.word(key));
     if (section.optional("hammer")) roles.hammer = body(section, "hammer");
+    if (roles.hammer != kGround && roles.string >= 0) {
+      const Contact& string = file_.model.contacts[static_cast<std::size_t>(roles.string)];
+      if (string.body_a != roles.hammer && string.body_b != roles.hammer)
+        section.reject(section.line("hammer"), fmt::format("hammer = {} in events, must be a body of the string's contact {}",
+                                                           section.word("hammer"), string.name.view()));
+    }
     section.finish();
   }
 

@@ -26,6 +26,8 @@ class Parameters {
       if (at == place_.end())
         throw InputError(fmt::format("--set {}={}: {} has no parameter of this name{}", printable(setting.name), setting.value,
                                      file_, suggest(setting.name, names)));
+      if (!std::isfinite(setting.value))
+        throw InputError(fmt::format("--set {}={}: must be a finite number", setting.name, setting.value));
       list_[at->second].value = setting.value;
       list_[at->second].line = 0;
     }

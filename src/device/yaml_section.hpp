@@ -78,12 +78,7 @@ class YamlSection {
 
   YAML::Node required(const std::string& key) {
     asked_.insert(key);
-    if (!has(key)) {
-      std::vector<std::string> others;
-      for (const std::string& k : keys_)
-        if (!asked_.contains(k)) others.push_back(k);
-      reject(line_, fmt::format("key {} is missing{}{}", key, where(), suggest(key, others)));
-    }
+    if (!has(key)) reject_missing(key);
     return node_[key];
   }
 
@@ -135,6 +130,14 @@ class YamlSection {
   std::string where() const { return name_.empty() ? "" : " in " + name_; }
 
  private:
+  /// A key that is not there may be there misspelt.
+  [[noreturn]] void reject_missing(const std::string& key) const {
+    for (std::size_t i = 0; i < keys_.size(); ++i)
+      if (!asked_.contains(keys_[i]) && edit_distance(key, keys_[i]) <= 1 + key.size() / 4)
+        reject(lines_[i], fmt::format("key {} is not known{}, did you mean {}?", printable(keys_[i]), where(), key));
+    reject(line_, fmt::format("key {} is missing{}", key, where()));
+  }
+
   static int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
 
   std::string file_, name_;

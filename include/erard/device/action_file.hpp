@@ -43,7 +43,7 @@ struct ActionOptions {
   bool keep_totals = true;
 };
 
-/// Reads config/grand_action.yaml or another action of that form; its header explains the names.
+/// Reads config/grand_action.yaml or another action of that form; docs/action_file.md has the keys.
 /// Strict: keys that are not known, missing or doubled, numbers without the right unit, impossible values, parameters
 /// that nothing uses, all are refused.
 /// Taking a felt of mass m at P (the middle of its zone on the carrier) out of the carrier:
