@@ -159,6 +159,9 @@ TEST(ActionFile, BadFilesAreRefusedInOneSentenceWithTheirPlace) {
       {"jack with less inertia than its mass has", "J_Gy: {value: 0,", "J_Gy: {value: 0.03,", "I_J:", {"I_J = 1.5e-06", "at least"}},
       {"damper contact elsewhere", "contacts: [KD, DG]", "contacts: [KD, HG]", "damper:", {"HG", "contacts of its body"}},
       {"hammer that never meets the string", "hammer: H}", "hammer: L}", "events:", {"hammer = L", "HG"}},
+      {"name with a comma", "    W:\n      what: whippen", "    \"W,x\":\n      what: whippen", "\"W,x\"", {"W,x", "letters, digits"}},
+      {"friction and restitution", "      felt: {carrier: b, stiffness: k_JG, exponent: r_JG, damping: b_JG, mass: m_fJG, axis: contact_normal}\n", "      restitution: nu_JG\n",
+       "restitution: nu_JG", {"JG", "only one of them"}},
       {"name too long", "name: grand action", "name: the grand action of 1821", "name: the grand", {"name", "at most 15"}},
       {"event of no contact", "{let_off: JG,", "{let_off: JX,", "{let_off: JX", {"let_off = JX", "must be a contact"}},
   };

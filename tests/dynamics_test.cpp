@@ -121,6 +121,7 @@ TEST(Dynamics, FeltMassTakenFromItsCarrierLeavesTheInertiaOfTheWhole) {
   contact.shape_b = {ShapeKind::circle, {0, -10}, 0, 0, 0.01};
   contact.has_felt = true;
   contact.felt = test::common_felt();
+  contact.felt.place = place;
   model.contact_count = 1;
   Body& body = model.bodies[0];
   const double m = contact.felt.mass;

@@ -46,6 +46,27 @@ TEST(Events, WithoutStringTheEscapementIsStillTold) {
   EXPECT_NEAR(stroke.find(EventKind::escapement)->time, 0.11275, 1e-3);
 }
 
+TEST(Events, DoNotDependOnTheClock) {
+  const Keystroke forte = test::keystroke("forte");
+  std::vector<double> times(forte.times().begin(), forte.times().end()), values(forte.values().begin(), forte.values().end());
+  for (double& t : times) t -= 5;
+  const auto early = test::play(test::grand_action(), Keystroke(KeystrokeQuantity::position, times, values));
+  const auto stroke = test::play(test::grand_action(), forte);
+  ASSERT_EQ(early.result.events.size(), stroke.result.events.size());
+  for (std::size_t i = 0; i < stroke.result.events.size(); ++i) {
+    EXPECT_EQ(early.result.events[i].kind, stroke.result.events[i].kind);
+    EXPECT_NEAR(early.result.events[i].time + 5, stroke.result.events[i].time, 1.3e-4);  // one internal step
+  }
+}
+
+TEST(Events, AHammerThrownBeforeTheLetOffHasEscaped) {
+  // 3 cm in 0.1 s: the hammer leaves the jack at 3.4 m/s before the jack meets its button
+  const Keystroke blow(KeystrokeQuantity::position, {0, 0.1, 0.2}, {0, 0.03, 0});
+  const auto stroke = test::play(test::grand_action(), blow);
+  ASSERT_NE(stroke.find(EventKind::escapement), nullptr);
+  EXPECT_LT(stroke.find(EventKind::escapement)->time, stroke.find(EventKind::jack_meets_let_off)->time);
+}
+
 TEST(Events, RestHasNone) {
   const Keystroke rest(KeystrokeQuantity::position, {0, 0.5}, {0, 0});
   EXPECT_TRUE(test::play(test::grand_action(), rest).result.events.empty());

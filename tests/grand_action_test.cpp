@@ -1,5 +1,5 @@
 // The grand action works as a grand action: 2 kHz, default settings.
-// Targets: the regulation of thesis Appendix A and the figures of docs/reference.md, reached there by an independent
+// Targets: the regulation of thesis Appendix A and the figures of docs/action.md, reached there by an independent
 // simulation of the same parameters in steps of 2.5 us.
 #include <gtest/gtest.h>
 
@@ -186,8 +186,8 @@ double eta(const Stroke& stroke, const char* name, double end) {
 TEST(Reference, ForceAgreesAtTwoKilohertz) {
   for (const auto& [name, stroke, release, check] :
        {std::tuple{"piano", &piano(), 0.220, 0.139}, {"forte", &forte(), 0.142, 0.088}}) {
-    EXPECT_LT(eta(*stroke, name, release), 0.05) << name;
-    EXPECT_LT(eta(*stroke, name, check), 0.05) << name;
+    EXPECT_LT(eta(*stroke, name, release), 0.01) << name;  // 5 % is asked; 0.2 to 0.4 % is where it stands
+    EXPECT_LT(eta(*stroke, name, check), 0.01) << name;
     std::printf("%s, 2 kHz: eta %.2f %% to the release, %.2f %% to the check\n", name, 100 * eta(*stroke, name, release),
                 100 * eta(*stroke, name, check));
   }
@@ -255,10 +255,14 @@ TEST(Reference, FeltMassHardlyMatters) {
 // ---- laws on the whole action
 
 TEST(Contacts, ClosedContactsDoNotPenetrate) {
-  const ActionFile action = test::grand_action();
-  const Mechanism mechanism = build_mechanism(action.model);
   double closed = 0, closing = 0;
-  for (const char* name : {"piano", "forte", "repetition", "recorded_fast", "recorded_fast_free_release"}) {
+  for (const auto& [name, damper] : {std::pair{"piano", false}, {"forte", false}, {"repetition", false}, {"recorded_fast", false},
+                                     {"recorded_fast_free_release", false}, {"recorded_medium", false},
+                                     {"recorded_repeated", false}, {"forte", true}, {"recorded_fast", true}}) {
+    ActionOptions options;
+    options.damper = damper;
+    const ActionFile action = test::grand_action(options);
+    const Mechanism mechanism = build_mechanism(action.model);
     const Keystroke keystroke = test::keystroke(name);
     const TickSettings settings = test::default_tick();
     State state = rest_state(mechanism, settings.scheme.time_step);
@@ -356,7 +360,7 @@ TEST(Drives, KeyDriveByThePistonRunsOwnKeyGivesItsForce) {
   };
   // y differentiated twice shows every impact of the action, and the force is the mean over the last step: first order
   const double coarse = error(10000), fine = error(40000);
-  EXPECT_LT(fine, 0.03);
+  EXPECT_LT(fine, 0.01);
   EXPECT_LT(fine, coarse / 2);
 }
 

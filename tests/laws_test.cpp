@@ -127,6 +127,47 @@ TEST(RigidContact, BouncesDieOut) {
   EXPECT_LT(state.x[1] - 0.01, 1e-5);
 }
 
+/// A lever that can fall on a rigid stop at the height of its hinge: its tangent there cannot move.
+Model lever_on_stop(double friction) {
+  Model model = test::pendulum(0.1, 0.2, 1.8);
+  Contact& contact = model.contacts[0];
+  contact.body_a = 0;
+  contact.shape_a = {ShapeKind::circle, {0.01, -0.2}, 0, 0, 0.01};  // touches the height of the hinge when level
+  contact.shape_b = {ShapeKind::segment, {0.2, 0}, 0, 0.1, 0};
+  contact.friction = friction;
+  model.contact_count = 1;
+  return model;
+}
+
+TEST(RigidContact, LeverFallsOnAStopAtTheHeightOfItsHinge) {
+  const Mechanism mechanism = build_mechanism(lever_on_stop(0.3));
+  State state = rest_state(mechanism, 5e-4);
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 2, state, [](const StepReport& report, const State&) {
+    ASSERT_NE(report.status, StepStatus::not_finite);
+  });
+  EXPECT_NEAR(state.x[0], std::acos(0.0), 1e-5);  // level
+}
+
+TEST(RigidContact, OverlapThatNothingCanUndoLeavesTheStateFinite) {
+  Model model = lever_on_stop(0.3);
+  model.bodies[0].is_held = true;
+  model.bodies[0].initial = 1.5;  // through the stop
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 5e-4);
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 0.1, state);
+  EXPECT_EQ(state.x[0], 1.5);
+}
+
+TEST(Drives, WithoutFingerADriveIsRefused) {
+  const Mechanism mechanism = build_mechanism(lever_on_stop(0));
+  for (const DriveKind kind : {DriveKind::force, DriveKind::piston, DriveKind::key}) {
+    State state = rest_state(mechanism, 5e-4);
+    Workspace work;
+    EXPECT_EQ(step(mechanism, scheme_of(5e-4, 0.5), Drive{kind, {1, 0}, {1, 0}}, state, work).status, StepStatus::not_finite);
+    EXPECT_EQ(state.time, 0);
+  }
+}
+
 TEST(FeltContact, BallOnFeltFindsItsStaticCompression) {
   const double mass = 0.2;
   const Mechanism mechanism = build_mechanism(test::ball_on_felt(mass, 0));
@@ -201,6 +242,29 @@ TEST(FeltContact, FreeFeltComesToItsStopAndStays) {
                  [&](const StepReport&, const State& s) { lowest = std::min(lowest, s.x[2]); });
   EXPECT_GE(lowest, -1e-15);
   EXPECT_LT(state.x[2], 1e-5);
+}
+
+TEST(Energy, OfARotorWithAnOpenFeltIsKept) {
+  // the felt looks at a circle beside the rotor and sees its nearest point run along: its mass must not run with it
+  Model model = test::pendulum(0.1, 0.05, 0);
+  model.gravity = {0, 0};
+  Contact& contact = model.contacts[0];
+  contact.body_a = 0;
+  contact.shape_a = {ShapeKind::circle, {0, 0}, 0, 0, 0.2};
+  contact.shape_b = {ShapeKind::circle, {0.5, 0}, 0, 0, 0.05};
+  contact.has_felt = true;
+  contact.felt = test::common_felt();
+  contact.felt.place = {0.2, 0};
+  model.contact_count = 1;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 1.25e-4);
+  state.v[0] = 20;
+  const double start = measure_energy(mechanism, state).total();
+  double most = 0;
+  test::run_free(mechanism, test::default_scheme(), 1, state, [&](const StepReport&, const State& s) {
+    most = std::max(most, measure_energy(mechanism, s).total() - start);
+  });
+  EXPECT_LT(most, 1e-9);
 }
 
 TEST(Energy, NeverGrowsInABouncingBallOnFelt) {

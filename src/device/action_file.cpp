@@ -100,6 +100,8 @@ class Builder {
     return names;
   }
   void check_name(const YamlSection& section, const std::string& name) const {
+    if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '+' || c == '-'; }))
+      section.reject(section.line(name), fmt::format("name {} must be of letters, digits, _, + and -", printable(name)));
     if (name.size() > Name::kCapacity)
       section.reject(section.line(name), fmt::format("name {} is too long, must have at most {} letters", printable(name), Name::kCapacity));
   }
@@ -209,6 +211,9 @@ class Builder {
     if (section.optional("felt")) read_felt(section.section("felt"), contact, zone_a, zone_b);
     if (contact.has_felt && contact.restitution > 0)
       section.reject(section.line("restitution"), fmt::format("contact {} has a felt and a restitution, may have only one of them", name));
+    if (contact.friction > 0 && contact.restitution > 0)
+      section.reject(section.line("restitution"), fmt::format("contact {} has a restitution and a friction, may have only one of them: "
+                                                              "together they can create energy", name));
     section.finish();
     return contact;
   }
@@ -225,8 +230,9 @@ class Builder {
       felt.axis = FeltAxis::fixed;
       felt.direction = number(section, "direction", "rad", Rule::any);
     }
+    felt.place = felt.is_carried_by_a ? zone_a : zone_b;
     const int holder = carrier(contact);
-    if (options_.keep_totals && holder != kGround) take_from(section, felt.mass, felt.is_carried_by_a ? zone_a : zone_b, holder);
+    if (options_.keep_totals && holder != kGround) take_from(section, felt.mass, felt.place, holder);
     section.finish();
   }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "erard/haptics/finger.hpp"
 #include "erard/mechanics/contact_frames.hpp"
@@ -131,6 +132,9 @@ class EventDetector {
     ++strike_;
     is_rearmed_ = has_let_off_ = has_rail_ = has_impact_ = is_check_due_ = false;
     is_return_due_ = is_ready_due_ = has_left_rest_ = was_aside_ = false;
+    escapement_ = next_escapement_;
+    has_escaped_ = has_next_escapement_;
+    has_next_escapement_ = false;
   }
 
   void see_descent(const Sight& now, const Event& here) noexcept {
@@ -139,11 +143,7 @@ class EventDetector {
       has_let_off_ = is_return_due_ = is_ready_due_ = true;
       add(here, EventKind::jack_meets_let_off);
     }
-    // the last loss of contact while the jack is out; of a press so slow that it keeps in touch, the last one later
-    if (has_let_off_ && !has_impact_ && !is_escape_settled_ && before_.escapement && !now.escapement) {
-      escapement_ = here;
-      has_escaped_ = true;
-    }
+    if (before_.escapement && !now.escapement) see_loss_of_contact(here);
     if (now.front_rail && (!has_rail_ || is_rearmed_)) {
       begin_strike_if_rearmed();
       has_rail_ = true;
@@ -151,10 +151,23 @@ class EventDetector {
     }
   }
 
+  /// Escapement is the last loss of contact before the string is hit; without impact the last one before the jack returns,
+  /// or, of a press so slow that it keeps in touch until then, the last one later.
+  void see_loss_of_contact(const Event& here) noexcept {
+    const bool is_of_next = is_rearmed_ && (has_impact_ || is_escape_settled_);
+    if (is_of_next) {
+      next_escapement_ = here;
+      has_next_escapement_ = true;
+    } else if (!has_impact_) {
+      escapement_ = here;
+      has_escaped_ = true;
+    }
+  }
+
   void see_string(const Sight& now, const Event& here) noexcept {
     if (now.string && !before_.string && here.time - last_impact_ > kLockOut) {
       begin_strike_if_rearmed();
-      settle_escapement();
+      settle_escapement(true);
       has_impact_ = is_check_due_ = is_return_due_ = is_ready_due_ = true;
       last_impact_ = here.time;
       add(here, EventKind::hammer_meets_string);
@@ -167,8 +180,8 @@ class EventDetector {
 
   /// After an impact the return counts from 5 ms on; without one, once the jack has been aside.
   void see_return(const Sight& now, const Event& here, bool is_under) noexcept {
-    if (has_let_off_ && !now.jack_rest) has_left_rest_ = true;
-    if (has_let_off_ && !is_under) was_aside_ = true;
+    if (is_return_due_ && !now.jack_rest) has_left_rest_ = true;
+    if (is_return_due_ && !is_under) was_aside_ = true;
     const bool is_over = !has_impact_ || here.time >= last_impact_ + kReturnDelay;
     if (is_ready_due_ && is_over && was_aside_ && is_under) {
       is_ready_due_ = false;
@@ -182,8 +195,9 @@ class EventDetector {
     }
   }
 
-  void settle_escapement() noexcept {
-    if (has_escaped_ && !has_impact_) add(escapement_, EventKind::escapement);
+  /// @param is_hit  the string is being hit; otherwise only a press that reached the let-off has escaped
+  void settle_escapement(bool is_hit = false) noexcept {
+    if (has_escaped_ && !has_impact_ && (has_let_off_ || is_hit)) add(escapement_, EventKind::escapement);
     has_escaped_ = is_escape_settled_ = false;
   }
 
@@ -197,10 +211,11 @@ class EventDetector {
   int strike_ = 1;
   Sight before_;
   double hammer_speed_ = 0;     // at the last step [m/s]
-  double last_impact_ = -1;     // [s]
+  double last_impact_ = -std::numeric_limits<double>::infinity();  // [s]
   Event escapement_;            // the last candidate
   bool has_let_off_ = false, has_rail_ = false, has_impact_ = false, has_escaped_ = false;
-  bool is_escape_settled_ = false;
+  Event next_escapement_;       // a candidate that came after the jack had returned
+  bool is_escape_settled_ = false, has_next_escapement_ = false;
   bool is_check_due_ = false, is_return_due_ = false, is_ready_due_ = false;
   bool has_left_rest_ = false, was_aside_ = false, is_rearmed_ = false;
 };

@@ -12,7 +12,7 @@ struct ContactFrame {
   double gap = 0;                      // compression of the felt included: 0 when the felt touches [m]
   Vector2 normal = Vector2::UnitY();   // from A to B
   Vector2 point = Vector2::Zero();     // where the tangential force acts: on the side without felt
-  Vector2 felt_point = Vector2::Zero();  // where the mass of the felt is
+  Vector2 felt_point = Vector2::Zero();  // where the mass of the felt is, uncompressed
   Vector2 felt_slide = Vector2::Zero();  // velocity of the felt per unit rate of compression: into the carrier
   double felt_lever = 1;                 // d gap / d compression [-]
 };
@@ -44,10 +44,8 @@ inline ContactFrame locate_contact(const Contact& contact, const Frames& frames,
   const Vector2 axis = is_fixed ? (on_a ? frame_a : frame_b).turned(outwards) : away;
   result.felt_slide = -axis;
   result.felt_lever = axis.dot(away);
-  result.felt_point = on_a ? s.point_a : s.point_b;
-  if (is_fixed) return result;
-  result.felt_point += compression * result.felt_slide;
-  result.gap += compression;
+  result.felt_point = (on_a ? frame_a : frame_b).placed(contact.felt.place);
+  if (!is_fixed) result.gap += compression;
   return result;
 }
 

@@ -34,6 +34,7 @@ struct Felt {
   double exponent = 1;   // r >= 1 [-]
   double damping = 0;    // b [N s/m^3]
   double mass = 0;       // of the part that moves [kg]; belongs to the carrier's total
+  Vector2 place = Vector2::Zero();  // of that mass, in the carrier's frame: the zone where the felt is touched [m]
   bool is_carried_by_a = true;
   FeltAxis axis = FeltAxis::contact_normal;
   double direction = 0;  // of a fixed axis: outwards, from the carrier to the other body, in the carrier's frame [rad]

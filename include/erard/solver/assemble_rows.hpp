@@ -142,6 +142,21 @@ inline void choose_rows(const Mechanism& mechanism, const Scheme& scheme, const 
   }
 }
 
+/// A row along which nothing can move (a tangent through the hinge, a stop of a prescribed key) takes no part: its
+/// impulse is zero and no other row sees it.
+inline void idle_fixed_rows(OneStepProblem& problem) noexcept {
+  constexpr double kLeastMobility = 1e-14;  // of the largest of the unit: rounding of a lever arm, squared, is 1e-30
+  ByUnit largest;
+  for (int i = 0; i < problem.size; ++i) largest.raise(problem.cone[i], problem.W(i, i));
+  for (int i = 0; i < problem.size; ++i) {
+    if (problem.W(i, i) > kLeastMobility * largest.of(problem.cone[i])) continue;
+    problem.W.row(i).setZero();
+    problem.W.col(i).setZero();
+    problem.W(i, i) = 1;
+    problem.q[i] = 0;
+  }
+}
+
 /// W = G^T A^-1 H, q and the cones of the rows in play. G = H, but felts enter a position with weight 1 where bodies
 /// have theta, and the rows are scaled by 1 / theta: G_felt = H_felt / theta.
 inline void assemble_problem(const Mechanism& mechanism, const Scheme& scheme,
@@ -170,6 +185,7 @@ inline void assemble_problem(const Mechanism& mechanism, const Scheme& scheme,
     if (row.kind == RowKind::finger) problem.W(i, i) += finger_row(mechanism, scheme, drive, state).compliance;
     problem.cone[i] = cone_of(mechanism, scheme, row, row.normal < 0 ? -1 : work.place[row.normal]);
   }
+  idle_fixed_rows(problem);
 }
 
 }  // namespace erard

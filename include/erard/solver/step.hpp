@@ -9,7 +9,8 @@ namespace erard {
 enum class StepStatus {
   converged,
   not_converged,  // an iteration limit was reached; the state is the best found and goes on
-  not_finite,     // a number of the input or the result is not finite; the state is left as it was
+  not_finite,     // a number of the input or the result is not finite, or there is no finger to be driven; the state
+                  // is left as it was
 };
 
 struct StepReport {
@@ -65,8 +66,9 @@ inline bool find_violations(const Mechanism& mechanism, const Scheme& scheme,
   return found;
 }
 
-/// End velocity of this linearisation; @return its change in the energy norm, relative to the energy at hand and to
-/// what one step of free fall gives (so that rest has a scale).
+/// End velocity of this linearisation; @return its change, each coordinate weighted by its pivot D of A = L^T D L (the
+/// inertia that moves when the coordinates below it are free), relative to the velocity at hand and to what one step of
+/// free fall gives, so that rest has a scale.
 inline double update_velocity(const Mechanism& mechanism, const Scheme& scheme, Workspace& work) noexcept {
   work.scratch = work.free_velocity;
   work.scratch.noalias() += work.velocity_per_impulse * work.impulse;
@@ -86,7 +88,7 @@ inline double update_velocity(const Mechanism& mechanism, const Scheme& scheme, 
 /// Projects the penetration of contacts without felt away: smallest displacement in the metric of A.
 inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme,
                              const State& state, Workspace& work, CoordinateVector& end) noexcept {
-  constexpr int kProjectionSweeps = 20;  // contacts without felt are few; 20 sweeps leave 1e-6 of a penetration
+  constexpr int kProjectionSweeps = 20;  // bounded: what is left is taken up by the next step
   auto& shift = work.scratch;
   shift.setZero();
   bool is_closed = false;
@@ -131,12 +133,7 @@ inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, con
 /// Takes the iterate over as the state at the end of the step, unless a number is not finite.
 inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
                    State& state, Workspace& work, StepReport& report) noexcept {
-  if (!work.end_velocity.allFinite() || !work.impulse.allFinite()) {
-    report.status = StepStatus::not_finite;
-    return;
-  }
   const Finger& finger = mechanism.model.finger;
-  report.finger_force = finger_force(mechanism, scheme, drive, work);
   auto& end = work.end_position;
   end.resize(mechanism.coordinate_count);
   for (int i = 0; i < mechanism.coordinate_count; ++i)
@@ -144,6 +141,11 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
   close_rigid_gaps(mechanism, scheme, state, work, end);
   if (drive.kind == DriveKind::key)
     end[finger.body] = mechanism.model.bodies[finger.body].initial - drive.to.value / finger.arm;
+  if (!work.end_velocity.allFinite() || !work.impulse.allFinite() || !end.allFinite()) {
+    report.status = StepStatus::not_finite;
+    return;
+  }
+  report.finger_force = finger_force(mechanism, scheme, drive, work);
   state.x = end;
   state.v = work.end_velocity;
   state.impulse = work.guess;
@@ -159,7 +161,8 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
 inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
                        State& state, Workspace& work) noexcept {
   StepReport report;
-  if (!is_finite(drive)) {
+  const bool is_driven = drive.kind != DriveKind::none;
+  if (!is_finite(drive) || (is_driven && mechanism.model.finger.body == kGround)) {
     report.status = StepStatus::not_finite;
     return report;
   }
