@@ -15,6 +15,7 @@
 
 #include "erard/device/config_dir.hpp"
 #include "erard/device/error.hpp"
+#include "erard/device/report.hpp"
 #include "erard/device/results.hpp"
 #include "erard/version.hpp"
 
@@ -33,7 +34,7 @@ struct Options {
   std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off";
   double rate = 2000, duration = NAN, compare_until = NAN;
   int substeps = 0;
-  std::vector<std::string> without, set;
+  std::vector<std::string> without, set, svg;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -57,8 +58,14 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--damper", o.damper, "on: the damper takes part; off: it is clamped")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  app.add_option("--out", o.out, "folder for trajectory.csv, events.yaml and summary.yaml (default: no files)");
-  app.add_option("--compare", o.compare, "CSV with t_s and force_N: report the relative error eta of (6.3) against it");
+  app.add_option("--out", o.out, "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)");
+  app.add_option("--svg", o.svg,
+                 "poses to draw into the folder of --out: times in s or names of events, for instance "
+                 "--svg 0,jack_meets_let_off")
+      ->delimiter(',');
+  app.add_option("--compare", o.compare,
+                 "results of another run (a folder of --out) or a CSV with t_s and force_N: report the relative error eta "
+                 "of (6.3) against it, and show both in report.html");
   app.add_option("--compare-until", o.compare_until, "end of the compared window in s (default: all that both have)");
   app.add_option("--dump-osnsp", o.dump,
                  "file for the one-step non-smooth problem of every internal step (W, q, cones, solution), JSON lines");
@@ -141,8 +148,9 @@ int simulate(const Options& o) {
   const Path keystroke_path = o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
   const ActionFile action = load_action(action_path, action_options);
   const Keystroke keystroke = read_keystroke(keystroke_path);
-  std::optional<ForceCurve> reference;
-  if (!o.compare.empty()) reference = read_force_curve(o.compare);
+  std::optional<OtherRun> other;
+  if (!o.compare.empty()) other = read_other_run(o.compare);
+  if (!o.svg.empty() && o.out.empty()) throw InputError("--svg needs --out DIR: the pictures are written there");
   if (action.model.finger.body == kGround)
     throw InputError(fmt::format("{}: has no finger, so no keystroke can be played on it", action_path.string()));
 
@@ -153,6 +161,8 @@ int simulate(const Options& o) {
   summary.tick.set_rate(o.rate, o.substeps);
   summary.start = keystroke.start();
   Outputs outputs(o, action.model);
+  const Scene scene = build_scene(action, o.out.empty() ? Drawing{} : load_drawing(action_path));
+  ReportRows rows(action.model, summary.start, summary.tick.period);
   ForceCurve curve;
   Progress progress;
 
@@ -162,7 +172,10 @@ int simulate(const Options& o) {
   settings.duration = std::isnan(o.duration) ? keystroke.end() - keystroke.start() : o.duration;
   settings.goes_on = std::ref(progress);
   settings.on_row = [&](const Snapshot& row) {
-    if (outputs.trajectory) outputs.trajectory->add(row);
+    if (outputs.trajectory) {
+      outputs.trajectory->add(row);
+      rows.add(row);
+    }
     curve.time.push_back(row.time);
     curve.force.push_back(row.force);
   };
@@ -171,10 +184,10 @@ int simulate(const Options& o) {
       outputs.problems->add(problem, impulse, time);
     };
   summary.result = run(action, keystroke, settings);
-  if (reference && curve.time.size() > 1) {
+  if (other && curve.time.size() > 1) {
     const double until = std::min({std::isnan(o.compare_until) ? INFINITY : o.compare_until, curve.time.back(),
-                                   reference->time.back()});
-    summary.comparison = Comparison{o.compare, until, relative_error(*reference, curve, until)};
+                                   other->force.time.back()});
+    summary.comparison = Comparison{o.compare, until, relative_error(other->force, curve, until)};
   }
 
   fmt::print("{}", describe(summary));
@@ -183,7 +196,14 @@ int simulate(const Options& o) {
     outputs.trajectory->commit();
     write_events(Path(o.out) / "events.yaml", summary.result.events);
     write_summary(Path(o.out) / "summary.yaml", summary);
-    fmt::print("files        {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml\n", o.out);
+    fmt::print("files        {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml, {0}/report.html\n", o.out);
+    action_options.damper = false;  // touch weight is measured without it
+    Report report{&summary, &scene, &rows, measure_action(load_action(action_path, action_options)),
+                  other ? &*other : nullptr};
+    const std::vector<Measure> stroke = measure_stroke(action, rows, summary.result.events);
+    report.measures.insert(report.measures.end(), stroke.begin(), stroke.end());
+    write_report(Path(o.out) / "report.html", report);
+    for (const Path& file : write_poses(o.out, o.svg, report)) fmt::print("picture      {}\n", file.string());
   }
   if (outputs.problems) fmt::print("problems     {}\n", o.dump);
   if (!summary.result.is_complete) return 130;

@@ -54,6 +54,8 @@ Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double ti
       if (model.bodies[j].joint == JointKind::hinge) rate += state.v[j];
     row.angle.push_back(is_hinge ? frames.body[i].angle : state.x[i]);
     row.rate.push_back(rate);
+    const int hinge = find_row(mechanism.rows, RowKind::hinge, i);
+    row.hinge_moment.push_back(hinge < 0 ? 0.0 : state.impulse[hinge] / time_step);
   }
   for (int c = 0; c < model.contact_count; ++c) {
     const Contact& contact = model.contacts[c];
@@ -64,6 +66,8 @@ Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double ti
     const double compression = felt >= 0 && force_c > 0 ? state.x[felt] : -gap;
     row.compression.push_back(contact.is_active ? compression : 0.0);
     row.normal.push_back(force_c);
+    const int tangent = find_row(mechanism.rows, RowKind::tangential, c);
+    row.tangential.push_back(tangent < 0 ? 0.0 : state.impulse[tangent] / time_step);
   }
   return row;
 }
