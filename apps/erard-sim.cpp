@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
+#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -32,7 +33,8 @@ std::atomic<bool> is_interrupted{false};
 
 struct Options {
   std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off";
-  double rate = 2000, duration = NAN, compare_until = NAN;
+  double rate = 2000;
+  std::optional<double> duration, compare_until;
   int substeps = 0;
   std::vector<std::string> without, set, svg;
 };
@@ -58,7 +60,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--damper", o.damper, "on: the damper takes part; off: it is clamped")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  app.add_option("--out", o.out, "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)");
+  app.add_option("--out", o.out, "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)")
+      ->check(CLI::Validator([](std::string& text) { return text.empty() ? "must name a folder" : std::string(); }, ""));
   app.add_option("--svg", o.svg,
                  "poses to draw into the folder of --out: times in s or names of events, for instance "
                  "--svg 0,jack_meets_let_off")
@@ -72,23 +75,19 @@ void add_options(CLI::App& app, Options& o) {
 }
 
 Setting parse_setting(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
-  std::size_t used = 0;
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const char* begin = text.data() + std::min(equals + 1, text.size());
+  const char* end = text.data() + text.size();
   double value = NAN;
-  try {
-    if (equals != std::string::npos) value = std::stod(text.substr(equals + 1), &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (name.empty() || used == 0 || used != text.size() - equals - 1 || !std::isfinite(value))
+  const auto [stop, failure] = std::from_chars(begin, end, value);
+  if (equals == 0 || begin == end || failure != std::errc{} || stop != end || !std::isfinite(value))
     throw InputError(fmt::format("--set {}: must be NAME=VALUE with a finite number, for instance --set S_Jy=0.0588", text));
-  return {name, value};
+  return {text.substr(0, equals), value};
 }
 
-void check_range(const char* option, double value, double least, double most, const char* unit) {
+void check_range(const std::string& what, double value, double least, double most, const char* unit) {
   if (!(value >= least && value <= most))
-    throw InputError(fmt::format("{} = {}, must be {} to {} {}", option, value, least, most, unit));
+    throw InputError(fmt::format("{} = {}, must be {} to {} {}", what, value, least, most, unit));
 }
 
 DriveKind choose_drive(const std::string& name, const Keystroke& keystroke, const std::string& file) {
@@ -123,91 +122,180 @@ class Progress {
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
 };
 
-/// Files of one run; those not asked for are absent.
-struct Outputs {
-  std::optional<TrajectoryFile> trajectory;
-  std::optional<ProblemFile> problems;
+/// What a run is to do, read and checked: nothing is written before all of it is good.
+struct Plan {
+  Path action_path, keystroke_path;
+  ActionOptions action_options;
+  ActionFile action;
+  Keystroke keystroke;
+  std::optional<OtherRun> other;
+  RunSummary summary;
+  double duration;       // [s]
+  double compare_until;  // [s]
+};
 
-  Outputs(const Options& o, const Model& model) {
+/// The key is put where the file says: from the start that must be its rest.
+void check_start(const Plan& plan) {
+  constexpr double kRest = 1e-4;  // [m]
+  const double start = plan.keystroke.at(plan.keystroke.start()).value;
+  if (plan.summary.tick.drive == DriveKind::key && std::abs(start) > kRest)
+    throw InputError(fmt::format("{}: starts at position_m = {}, must start within {} m of rest for --drive key",
+                                 plan.keystroke_path.string(), start, kRest));
+}
+
+/// The window of --compare must hold something to compare with.
+void check_window(const Plan& plan, const std::string& name) {
+  const ForceCurve& other = plan.other->force;
+  const double end = std::min(plan.compare_until, plan.summary.start + plan.duration);
+  double largest = 0;
+  int rows = 0;
+  for (std::size_t i = 0; i < other.time.size(); ++i) {
+    if (other.time[i] < plan.summary.start || other.time[i] > end) continue;
+    ++rows;
+    largest = std::max(largest, std::abs(other.force[i]));
+  }
+  if (rows < 2 || largest == 0)
+    throw InputError(fmt::format("--compare {}: holds no force between {} and {} s, must overlap with the run", name,
+                                 plan.summary.start, end));
+}
+
+Plan make_plan(const Options& o) {
+  check_range("--rate", o.rate, kSlowestRate, kFastestRate, "Hz");
+  if (!o.svg.empty() && o.out.empty()) throw InputError("--svg needs --out DIR: the pictures are written there");
+  if (o.compare_until && o.compare.empty()) throw InputError("--compare-until needs --compare: there is nothing to compare with");
+  ActionOptions options;
+  for (const std::string& text : o.set) options.settings.push_back(parse_setting(text));
+  options.without = o.without;
+  options.damper = o.damper == "on";
+  const Path action_path = o.action.empty() ? config_dir() / "grand_action.yaml" : Path(o.action);
+  const Path keystroke_path = o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
+  Plan plan{action_path, keystroke_path, options, load_action(action_path, options), read_keystroke(keystroke_path), {}, {}, 0, 0};
+  if (plan.action.model.finger.body == kGround)
+    throw InputError(fmt::format("{}: has no finger, so no keystroke can be played on it", action_path.string()));
+  plan.duration = o.duration.value_or(plan.keystroke.end() - plan.keystroke.start());
+  check_range(o.duration ? "--duration" : keystroke_path.string() + ": duration", plan.duration, 1 / o.rate, kLongestRun, "s");
+  plan.compare_until = o.compare_until.value_or(INFINITY);
+  if (std::isnan(plan.compare_until)) throw InputError("--compare-until = nan, must be a time in s");
+  plan.summary.action = action_path.string();
+  plan.summary.keystroke = keystroke_path.string();
+  plan.summary.tick.drive = choose_drive(o.drive, plan.keystroke, keystroke_path.string());
+  plan.summary.tick.set_rate(o.rate, o.substeps);
+  plan.summary.start = plan.keystroke.start();
+  check_start(plan);
+  if (!o.compare.empty()) {
+    plan.other = read_other_run(o.compare);
+    check_window(plan, o.compare);
+  }
+  return plan;
+}
+
+/// Files of one run, all opened before it starts; those not asked for are absent.
+struct Outputs {
+  std::optional<OutputFile> trajectory, events, summary, report, problems;
+
+  explicit Outputs(const Options& o) {
     if (!o.out.empty()) {
       prepare_output_folder(o.out);
-      trajectory.emplace(Path(o.out) / "trajectory.csv", model);
+      trajectory.emplace(Path(o.out) / "trajectory.csv");
+      events.emplace(Path(o.out) / "events.yaml");
+      summary.emplace(Path(o.out) / "summary.yaml");
+      report.emplace(Path(o.out) / "report.html");
     }
-    if (!o.dump.empty()) problems.emplace(Path(o.dump));
+    if (o.dump.empty()) return;
+    std::error_code ignored;
+    for (const Path& used : {Path(o.action), Path(o.keystroke), Path(o.compare), Path(o.out) / "trajectory.csv.part"})
+      if (std::filesystem::equivalent(used, o.dump, ignored) || std::filesystem::equivalent(used, o.dump + ".part", ignored))
+        throw InputError(fmt::format("--dump-osnsp {}: is another file of this run, must be one of its own", o.dump));
+    problems.emplace(o.dump);
+  }
+
+  void commit() {
+    if (trajectory) commit_together({&*trajectory, &*events, &*summary, &*report});
+    if (problems) problems->commit();
   }
 };
 
-int simulate(const Options& o) {
-  check_range("--rate", o.rate, kSlowestRate, kFastestRate, "Hz");
-  if (!std::isnan(o.duration)) check_range("--duration", o.duration, 1 / o.rate, kLongestRun, "s");
-  ActionOptions action_options;
-  for (const std::string& text : o.set) action_options.settings.push_back(parse_setting(text));
-  action_options.without = o.without;
-  action_options.damper = o.damper == "on";
-  const Path action_path = o.action.empty() ? config_dir() / "grand_action.yaml" : Path(o.action);
-  const Path keystroke_path = o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
-  const ActionFile action = load_action(action_path, action_options);
-  const Keystroke keystroke = read_keystroke(keystroke_path);
-  std::optional<OtherRun> other;
-  if (!o.compare.empty()) other = read_other_run(o.compare);
-  if (!o.svg.empty() && o.out.empty()) throw InputError("--svg needs --out DIR: the pictures are written there");
-  if (action.model.finger.body == kGround)
-    throw InputError(fmt::format("{}: has no finger, so no keystroke can be played on it", action_path.string()));
+Report make_report(const Plan& plan, const Scene& scene, const ReportRows& rows) {
+  ActionOptions undamped = plan.action_options;
+  undamped.damper = false;  // touch weight is measured without it
+  Report report{&plan.summary, &scene, &rows, measure_action(load_action(plan.action_path, undamped)),
+                plan.other ? &*plan.other : nullptr};
+  const std::vector<Measure> stroke = measure_stroke(plan.action, rows, plan.summary.result.events);
+  report.measures.insert(report.measures.end(), stroke.begin(), stroke.end());
+  return report;
+}
 
-  RunSummary summary;
-  summary.action = action_path.string();
-  summary.keystroke = keystroke_path.string();
-  summary.tick.drive = choose_drive(o.drive, keystroke, keystroke_path.string());
-  summary.tick.set_rate(o.rate, o.substeps);
-  summary.start = keystroke.start();
-  Outputs outputs(o, action.model);
-  const Scene scene = build_scene(action, o.out.empty() ? Drawing{} : load_drawing(action_path));
-  ReportRows rows(action.model, summary.start, summary.tick.period);
+/// Plays the plan and fills the files.
+void play(const Options& o, Plan& plan, Outputs& outputs) {
+  const Model& model = plan.action.model;
+  RunSummary& summary = plan.summary;
+  std::optional<TrajectoryFile> trajectory;
+  std::optional<ProblemFile> problems;
+  if (outputs.trajectory) trajectory.emplace(*outputs.trajectory, model);
+  if (outputs.problems) problems.emplace(*outputs.problems);
+  const Scene scene = build_scene(plan.action, trajectory ? load_drawing(plan.action_path) : Drawing{});
+  ReportRows rows(model, summary.start, summary.tick.period);
   ForceCurve curve;
   Progress progress;
 
   RunSettings settings;
   settings.tick = summary.tick;
   settings.start = summary.start;
-  settings.duration = std::isnan(o.duration) ? keystroke.end() - keystroke.start() : o.duration;
+  settings.duration = plan.duration;
   settings.goes_on = std::ref(progress);
   settings.on_row = [&](const Snapshot& row) {
-    if (outputs.trajectory) {
-      outputs.trajectory->add(row);
+    if (trajectory) {
+      trajectory->add(row);
       rows.add(row);
     }
+    if (!plan.other) return;
     curve.time.push_back(row.time);
     curve.force.push_back(row.force);
   };
-  if (outputs.problems)
+  if (problems)
     settings.on_problem = [&](const OneStepProblem& problem, const RowVector& impulse, double time) {
-      outputs.problems->add(problem, impulse, time);
+      problems->add(problem, impulse, time);
     };
-  summary.result = run(action, keystroke, settings);
-  if (other && curve.time.size() > 1) {
-    const double until = std::min({std::isnan(o.compare_until) ? INFINITY : o.compare_until, curve.time.back(),
-                                   other->force.time.back()});
-    summary.comparison = Comparison{o.compare, until, relative_error(other->force, curve, until)};
-  }
+  summary.result = run(plan.action, plan.keystroke, settings);
 
-  fmt::print("{}", describe(summary));
-  if (outputs.problems) outputs.problems->commit();
-  if (outputs.trajectory) {
-    outputs.trajectory->commit();
-    write_events(Path(o.out) / "events.yaml", summary.result.events);
-    write_summary(Path(o.out) / "summary.yaml", summary);
-    fmt::print("files        {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml, {0}/report.html\n", o.out);
-    action_options.damper = false;  // touch weight is measured without it
-    Report report{&summary, &scene, &rows, measure_action(load_action(action_path, action_options)),
-                  other ? &*other : nullptr};
-    const std::vector<Measure> stroke = measure_stroke(action, rows, summary.result.events);
-    report.measures.insert(report.measures.end(), stroke.begin(), stroke.end());
-    write_report(Path(o.out) / "report.html", report);
-    for (const Path& file : write_poses(o.out, o.svg, report)) fmt::print("picture      {}\n", file.string());
+  if (plan.other && curve.time.size() > 1) {
+    const ForceCurve& other = plan.other->force;
+    const double from = std::max(curve.time.front(), other.time.front());
+    const double until = std::min({plan.compare_until, curve.time.back(), other.time.back()});
+    summary.comparison = Comparison{o.compare, from, until, relative_error(other, curve, until)};
   }
-  if (outputs.problems) fmt::print("problems     {}\n", o.dump);
-  if (!summary.result.is_complete) return 130;
-  return summary.result.is_finite ? 0 : 1;
+  std::vector<Path> pictures;
+  if (trajectory) {
+    const Report report = make_report(plan, scene, rows);
+    write_events(*outputs.events, summary.result.events);
+    write_summary(*outputs.summary, summary);
+    write_report(*outputs.report, report);
+    outputs.commit();
+    pictures = write_poses(o.out, o.svg, report);
+  } else {
+    outputs.commit();
+  }
+  fmt::print("{}", describe(summary));
+  if (trajectory) fmt::print("files        {0}/report.html, {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml\n", o.out);
+  for (const Path& picture : pictures) fmt::print("picture      {}\n", picture.string());
+  if (problems) fmt::print("problems     {}\n", o.dump);
+}
+
+int simulate(const Options& o) {
+  Plan plan = make_plan(o);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { is_interrupted = true; });
+  Outputs outputs(o);
+  play(o, plan, outputs);
+  if (std::fflush(stdout) != 0) throw std::runtime_error("the summary could not be written to the standard output");
+  if (!plan.summary.result.is_complete) return 130;
+  return plan.summary.result.is_finite ? 0 : 1;
+}
+
+/// A message on one line, whatever names it quotes.
+void complain(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  fmt::print(stderr, "{}\n", message);
 }
 
 }  // namespace
@@ -223,18 +311,16 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& request) {
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "erard-sim: {}; see erard-sim --help\n", error.what());
+    complain(fmt::format("erard-sim: {}; see erard-sim --help", error.what()));
     return 2;
   }
-  std::signal(SIGINT, [](int) { is_interrupted = true; });
-  std::signal(SIGTERM, [](int) { is_interrupted = true; });
   try {
     return simulate(options);
   } catch (const erard::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    complain(error.what());
     return 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "erard-sim: {}\n", error.what());
+    complain(fmt::format("erard-sim: {}", error.what()));
     return 1;
   }
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <thread>
 
+#include "erard/erard.hpp"
 #include "support/program.hpp"
 
 namespace erard {
@@ -119,6 +120,86 @@ TEST(ErardSim, PlacesThatCannotBeUsedAreToldInOneSentence) {
   expect_one_sentence(run_program("erard-sim --action /no/such/file.yaml"), {"/no/such/file.yaml"});
   expect_one_sentence(run_program("erard-sim --compare /no/such/file.csv"), {"/no/such/file.csv"});
   expect_one_sentence(run_program("erard-sim --dump-osnsp /no/such/place/p.json"), {"/no/such/place/p.json"});
+  expect_one_sentence(run_program("erard-sim --dump-osnsp " + folder.path().string()), {folder.path().string(), "is a folder"});
+  std::filesystem::create_directories(folder / "run" / "summary.yaml");
+  expect_one_sentence(run_program("erard-sim --out " + (folder / "run").string()), {"summary.yaml", "is a folder"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "run" / "trajectory.csv"));
+}
+
+TEST(ErardSim, DumpedProblemsAreThoseThatWereSolved) {
+  const TemporaryFolder folder;
+  const std::string dump = folder / "problems.json";
+  ASSERT_EQ(run_program("erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/forte.csv --dump-osnsp " + dump).exit_code, 0);
+  std::istringstream lines(read_text(dump));
+  std::string line;
+  int count = 0;
+  double worst = 0;
+  for (; std::getline(lines, line); ++count) {
+    if (count % 40 != 0) continue;
+    const YAML::Node node = YAML::Load(line);  // JSON is YAML
+    OneStepProblem problem;
+    const int m = problem.size = static_cast<int>(node["q"].size());
+    problem.W.resize(m, m);
+    problem.q.resize(m);
+    RowVector r(m);
+    for (int i = 0; i < m; ++i) {
+      problem.q[i] = node["q"][i].as<double>();
+      r[i] = node["r"][i].as<double>();
+      for (int j = 0; j < m; ++j) problem.W(i, j) = node["W"][i][j].as<double>();
+      const YAML::Node cone = node["cone"][i];
+      const std::string kind = cone["kind"].as<std::string>();
+      if (kind == "half_line") problem.cone[i] = {ConeKind::half_line, -1, 0, false};
+      if (kind == "friction") problem.cone[i] = {ConeKind::friction, cone["normal"].as<int>(), cone["mu"].as<double>(), false};
+      if (kind == "interval") problem.cone[i] = {ConeKind::interval, -1, cone["bound"].as<double>(), cone["angular"].as<bool>()};
+    }
+    worst = std::max(worst, residual(problem, r));
+  }
+  EXPECT_EQ(count, 4796);     // 1199 periods of four steps
+  EXPECT_LT(worst, 1.1e-6);   // the tolerance of the sweeps
+}
+
+TEST(ErardSim, NothingToCompareIsNoAgreement) {
+  const TemporaryFolder folder;
+  expect_one_sentence(run_program("erard-sim --compare " ERARD_REFERENCE_DIR "/piano.csv --compare-until -1"), {"--compare", "must overlap"});
+  write_text(folder / "late.csv", "t_s,force_N\n100,1\n101,1\n");
+  expect_one_sentence(run_program("erard-sim --compare " + (folder / "late.csv").string()), {"late.csv", "must overlap"});
+  expect_one_sentence(run_program("erard-sim --compare-until 0.1"), {"--compare-until", "--compare"});
+}
+
+TEST(ErardSim, KeystrokesMustFitTheRun) {
+  const TemporaryFolder folder;
+  write_text(folder / "long.csv", "t_s,position_m\n0,0\n80000,0.001\n");
+  expect_one_sentence(run_program("erard-sim --keystroke " + (folder / "long.csv").string()), {"long.csv", "3600 s"});
+  EXPECT_EQ(run_program("erard-sim --duration 0.1 --keystroke " + (folder / "long.csv").string()).exit_code, 0);
+  write_text(folder / "short.csv", "t_s,position_m\n0,0\n0.00001,0.000001\n");
+  expect_one_sentence(run_program("erard-sim --keystroke " + (folder / "short.csv").string()), {"short.csv", "duration"});
+  write_text(folder / "jump.csv", "t_s,position_m\n0,0.01\n0.1,0.01\n");
+  expect_one_sentence(run_program("erard-sim --drive key --keystroke " + (folder / "jump.csv").string()), {"jump.csv", "rest"});
+}
+
+TEST(ErardSim, FilesOfOneRunMustNotBeTheSame) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "run";
+  expect_one_sentence(run_program("erard-sim --out " + out + " --dump-osnsp " + out + "/trajectory.csv"), {"--dump-osnsp", "another file"});
+  write_text(folder / "k.csv", "t_s,position_m\n0,0\n0.1,0.001\n");
+  const std::string k = folder / "k.csv";
+  expect_one_sentence(run_program("erard-sim --keystroke " + k + " --dump-osnsp " + k), {"--dump-osnsp", "another file"});
+}
+
+TEST(ErardSim, MessagesStayOnOneLineWhateverTheyQuote) {
+  expect_one_sentence(run_program("erard-sim --action \"$(printf 'a\\nb')\""), {"a"});
+  expect_one_sentence(run_program("erard-sim --set \"$(printf 'a\\nb')\""), {"a"});
+  expect_one_sentence(run_program("erard-sim --drive \"$(printf 'a\\nb')\""), {"a"});
+  expect_one_sentence(run_program("erard-sim --set m_H=0x1"), {"m_H=0x1"});
+}
+
+TEST(ErardSim, ALostSummaryIsAFailure) {
+  EXPECT_EQ(run_program("erard-sim --duration 0.1 >/dev/full").exit_code, 1);
+}
+
+TEST(ErardSim, CoarseStepsAreTold) {
+  EXPECT_NE(run_program("erard-sim --rate 400 --substeps 1").out.find("NOTE"), std::string::npos);
+  EXPECT_EQ(run_program("erard-sim --rate 400").out.find("NOTE"), std::string::npos);
 }
 
 TEST(ErardSim, BadInputLeavesNoFiles) {

@@ -147,6 +147,7 @@ TEST(RealTime, ScaledActionsPlayTheSame) {
         shape->radius *= s;
       }
       contact.felt.mass *= s * s * s;
+      contact.felt.place *= s;
       contact.felt.stiffness *= force / std::pow(s, contact.felt.exponent);
       contact.felt.damping *= force / (s * s * s / std::sqrt(s));
     }

@@ -33,6 +33,12 @@ Snapshot rest_snapshot(const ActionFile& action) {
   return take_snapshot(mechanism, rest_state(mechanism, 1e-4), 1e-4, {}, 0);
 }
 
+void save_report(const std::filesystem::path& path, const Report& report) {
+  OutputFile file(path);
+  write_report(file, report);
+  file.commit();
+}
+
 TEST(Report, IsOneFileThatAsksForNothingAndIsSmallEnough) {
   const TemporaryFolder folder;
   const std::string out = (folder / "run").string();
@@ -70,7 +76,7 @@ TEST(Report, TextsFromFilesCannotLeaveTheirPlace) {
   const OtherRun other{evil, {{0, 1}, {0, 0}}, ""};
   Report report{&summary, &scene, &rows, {}, &other};
   report.measures.push_back({evil, evil, {}, NAN, NAN, evil, evil});
-  write_report(folder / "report.html", report);
+  save_report(folder / "report.html", report);
   const std::string page = read_text((folder / "report.html").string());
   EXPECT_EQ(page.find("</script><b>"), std::string::npos);
   const std::string svg = draw_svg(scene, rows.snapshot(0), DriveKind::piston, evil);
@@ -86,7 +92,7 @@ TEST(Report, AStoppedRunSaysSo) {
   const auto page_of = [&](const RunResult& result) {
     RunSummary summary;
     summary.result = result;
-    write_report(folder / "report.html", Report{&summary, &scene, &rows, {}, nullptr});
+    save_report(folder / "report.html", Report{&summary, &scene, &rows, {}, nullptr});
     return read_text((folder / "report.html").string());
   };
   RunResult result;

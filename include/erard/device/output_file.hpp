@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <string_view>
 
 namespace erard {
@@ -19,7 +20,12 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view text) { stream_.write(text.data(), static_cast<std::streamsize>(text.size())); }
-  void commit();  // throws std::runtime_error when the disk did not take all of it
+  void close();    // all of it on the disk, still as NAME.part; throws std::runtime_error when the disk did not take it
+  void publish();  // gives it its name; after close()
+  void commit() {
+    close();
+    publish();
+  }
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -28,5 +34,8 @@ class OutputFile {
   std::ofstream stream_;
   bool is_committed_ = false;
 };
+
+/// Files that belong together: all are whole before the first of them gets its name, so that a full disk leaves none.
+void commit_together(std::initializer_list<OutputFile*> files);
 
 }  // namespace erard

@@ -33,7 +33,7 @@ struct Report {
 
 /// Writes the page. A run that was stopped or did not converge says so on top.
 /// Size: 0.8 MB for a stroke of one second at 2 kHz with 14 contacts.
-void write_report(const std::filesystem::path& path, const Report& report);
+void write_report(OutputFile& file, const Report& report);
 
 /// Writes single poses as SVG: pose_<word>.svg in `folder` for each word, a time in s or the name of an event (its first).
 /// @return the files. Throws InputError when a word is neither or the run has no such event.

@@ -16,12 +16,11 @@ namespace erard {
 /// theta absolute [rad]; delta: compression of a closed felt, minus the gap of an open contact.
 class TrajectoryFile {
  public:
-  TrajectoryFile(const std::filesystem::path& path, const Model& model);
+  TrajectoryFile(OutputFile& file, const Model& model);
   void add(const Snapshot& row);
-  void commit() { file_.commit(); }
 
  private:
-  OutputFile file_;
+  OutputFile& file_;
   std::string line_;
 };
 
@@ -30,17 +29,17 @@ class TrajectoryFile {
 /// Law: u = W r + q; half_line 0 <= r, 0 <= u, r u = 0; the others |r| <= bound, u against r (u = 0 inside).
 class ProblemFile {
  public:
-  explicit ProblemFile(const std::filesystem::path& path) : file_(path) {}
+  explicit ProblemFile(OutputFile& file) : file_(file) {}
   void add(const OneStepProblem& problem, const RowVector& impulse, double time);
-  void commit() { file_.commit(); }
 
  private:
-  OutputFile file_;
+  OutputFile& file_;
 };
 
 struct Comparison {
   std::string file;
-  double until = 0;  // end of the window [s]
+  double from = 0;   // window [s]
+  double until = 0;
   double eta = 0;    // [-]
 };
 
@@ -56,8 +55,8 @@ struct RunSummary {
 
 const char* name_of(DriveKind drive);
 
-void write_events(const std::filesystem::path& path, const std::vector<Event>& events);
-void write_summary(const std::filesystem::path& path, const RunSummary& summary);
+void write_events(OutputFile& file, const std::vector<Event>& events);
+void write_summary(OutputFile& file, const RunSummary& summary);
 
 /// The summary for a person at a terminal.
 std::string describe(const RunSummary& summary);

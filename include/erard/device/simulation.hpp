@@ -46,7 +46,7 @@ struct RunResult {
   bool is_complete = true;      // false: stopped from outside
   double peak_force = 0;        // [N]
   double peak_force_time = 0;   // [s]
-  double computing_time = 0;    // of the periods alone, without writing [s]
+  double computing_time = 0;    // of the periods, on_problem included, on_row not [s]
   double worst_tick = 0;        // longest period [s]
 };
 
