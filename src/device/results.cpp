@@ -142,7 +142,9 @@ void write_summary(OutputFile& file, const RunSummary& summary) {
   const double simulated = static_cast<double>(r.periods) * summary.tick.period;
   out << YAML::Key << "real_time_factor" << YAML::Value << simulated / std::max(r.computing_time, 1e-9);
   out << YAML::Key << "computing_s" << YAML::Value << r.computing_time;
-  out << YAML::Key << "worst_tick_s" << YAML::Value << r.worst_tick;
+  out << YAML::Key << "tick_median_s" << YAML::Value << r.tick_time.quantile(0.5);
+  out << YAML::Key << "tick_p99_s" << YAML::Value << r.tick_time.quantile(0.99);
+  out << YAML::Key << "tick_worst_s" << YAML::Value << r.tick_time.worst();
   out << YAML::EndMap;
   write_yaml(file, out);
 }
@@ -165,10 +167,10 @@ std::string describe(const RunSummary& s) {
   if (s.comparison)
     fmt::format_to(out, "error        eta {:.2f} % of the force in {}, {:.3f} to {:.3f} s (thesis 6.3)\n",
                    100 * s.comparison->eta, s.comparison->file, s.comparison->from, s.comparison->until);
-  fmt::format_to(out, "speed        {:.0f} times faster than real time; {:.1f} us a period of {:.0f} us, worst {:.0f} us\n",
-                 simulated / std::max(r.computing_time, 1e-9),
-                 1e6 * r.computing_time / static_cast<double>(std::max(r.periods, 1L)), 1e6 * s.tick.period,
-                 1e6 * r.worst_tick);
+  fmt::format_to(out, "speed        {:.0f} times faster than real time; a period of {:.0f} us takes {:.1f} us (median; 99 % {:.1f}, worst {:.0f}), "
+                 "a step {:.1f} us\n",
+                 simulated / std::max(r.computing_time, 1e-9), 1e6 * s.tick.period, 1e6 * r.tick_time.quantile(0.5),
+                 1e6 * r.tick_time.quantile(0.99), 1e6 * r.tick_time.worst(), 1e6 * r.tick_time.quantile(0.5) / s.tick.substeps);
   fmt::format_to(out, "solver       {} steps of {:.0f} us ({} a period): {:.1f} linearisations, {:.1f} sweeps each", r.steps,
                  1e6 * s.tick.scheme.time_step, s.tick.substeps, static_cast<double>(r.linearisations) / steps,
                  static_cast<double>(r.sweeps) / steps);

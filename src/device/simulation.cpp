@@ -101,7 +101,7 @@ RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSet
     const TickReport report = tick(mechanism, tick_settings, input, state, *work, observe);
     const double spent = std::chrono::duration<double>(Clock::now() - before).count();
     result.computing_time += spent;
-    result.worst_tick = std::max(result.worst_tick, spent);
+    result.tick_time.add(spent);
     result.is_finite = report.status != StepStatus::not_finite;
     if (!result.is_finite) break;
     ++result.periods;

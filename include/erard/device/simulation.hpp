@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "erard/device/action_file.hpp"
+#include "erard/device/duration_histogram.hpp"
 #include "erard/device/keystroke.hpp"
 #include "erard/haptics/events.hpp"
 #include "erard/haptics/tick.hpp"
@@ -47,7 +48,7 @@ struct RunResult {
   double peak_force = 0;        // [N]
   double peak_force_time = 0;   // [s]
   double computing_time = 0;    // of the periods, on_problem included, on_row not [s]
-  double worst_tick = 0;        // longest period [s]
+  DurationHistogram tick_time;  // of each period
 };
 
 /// Plays the keystroke from the rest state of the action.
