@@ -49,14 +49,14 @@ TEST(ActionFile, AnglesBecomeRelativeToTheParent) {
 
 TEST(ActionFile, CircleCentresLieOneRadiusFromTheirPoint) {
   // W_K: point (0.0605511631, -0.0173565144), radius 0.012, direction 1.62079633 rad
-  const Shape& shape = contact(load_action(kGrandAction), "KW").shape_b;
+  const Shape shape = contact(load_action(kGrandAction), "KW").shape_b;
   EXPECT_NEAR(shape.centre.x(), 0.0605511631 + 0.012 * std::cos(1.62079633), 1e-15);
   EXPECT_NEAR(shape.centre.y(), -0.0173565144 + 0.012 * std::sin(1.62079633), 1e-15);
 }
 
 TEST(ActionFile, JackTopIsACapsuleThatLiesBelowItsFace) {
   // J_H: (0.0001, 0.054), 6 mm long with corners of 0.4 mm
-  const Shape& shape = contact(load_action(kGrandAction), "JH").shape_a;
+  const Shape shape = contact(load_action(kGrandAction), "JH").shape_a;
   EXPECT_DOUBLE_EQ(shape.half_length, 0.0026);
   EXPECT_DOUBLE_EQ(shape.radius, 0.0004);
   EXPECT_NEAR(shape.centre.x(), 0.0001, 1e-15);
