@@ -56,7 +56,9 @@ void add_options(CLI::App& app, Request& request) {
   request.press_mm = settings.press * 1e3;
 
   app.set_version_flag("--version", std::string("erard-import ") + std::string(erard::kVersion));
-  app.add_option("INPUT", request.input, "Recording, CSV with t_s [s] and key_front_mm [mm]")->required()->type_name("FILE");
+  app.add_option("INPUT", request.input, "Recording, CSV with t_s [s] and key_front_mm [mm]")
+      ->required()
+      ->type_name("FILE");
   app.add_option("--out", request.output, "Keystroke to write, CSV with t_s [s] and position_m [m]")
       ->required()
       ->type_name("FILE");
@@ -97,9 +99,10 @@ std::vector<std::string> read_credit(const fs::path& file) {
     throw erard::InputError(fmt::format("{}: cannot be read, must be a text file", file.string()));
   for (std::string line; std::getline(stream, line); lines.push_back(line))
     if (lines.size() >= kMostLines || line.size() > 500)
-      throw erard::InputError(fmt::format("{}:{}: the text is too long for comments, must have at most {} lines of 500 "
-                                          "characters",
-                                          file.string(), lines.size() + 1, kMostLines));
+      throw erard::InputError(
+          fmt::format("{}:{}: the text is too long for comments, must have at most {} lines of 500 "
+                      "characters",
+                      file.string(), lines.size() + 1, kMostLines));
   return lines;
 }
 

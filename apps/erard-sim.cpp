@@ -48,7 +48,9 @@ void add_options(CLI::App& app, Options& o) {
                  "force: it presses the key (default: piston for position_m, force for force_N)")
       ->check(CLI::IsMember({"auto", "piston", "key", "force"}));
   app.add_option("--rate", o.rate, "rate of the output in Hz, 400 to 50000")->capture_default_str();
-  app.add_option("--substeps", o.substeps, "internal steps per output step, 1 to 1000 (default: as few as keep an internal step at 125 us or less, 4 at 2 kHz)")
+  app.add_option("--substeps", o.substeps,
+                 "internal steps per output step, 1 to 1000 (default: as few as keep an internal step at 125 us or "
+                 "less, 4 at 2 kHz)")
       ->check(CLI::Range(1, kMostSubsteps));
   app.add_option("--duration", o.duration, "simulated time in s, up to 3600 (default: the length of the keystroke)");
   app.add_option("--without", o.without, "contacts to leave out, for instance --without KH,HG")->delimiter(',');
@@ -60,15 +62,18 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--damper", o.damper, "on: the damper takes part; off: it is clamped")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  app.add_option("--out", o.out, "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)")
-      ->check(CLI::Validator([](std::string& text) { return text.empty() ? "must name a folder" : std::string(); }, ""));
+  app.add_option("--out", o.out,
+                 "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)")
+      ->check(
+          CLI::Validator([](std::string& text) { return text.empty() ? "must name a folder" : std::string(); }, ""));
   app.add_option("--svg", o.svg,
                  "poses to draw into the folder of --out: times in s or names of events, for instance "
                  "--svg 0,jack_meets_let_off")
       ->delimiter(',');
-  app.add_option("--compare", o.compare,
-                 "results of another run (a folder of --out) or a CSV with t_s and force_N: report the relative error eta "
-                 "of (6.3) against it, and show both in report.html");
+  app.add_option(
+      "--compare", o.compare,
+      "results of another run (a folder of --out) or a CSV with t_s and force_N: report the relative error eta "
+      "of (6.3) against it, and show both in report.html");
   app.add_option("--compare-until", o.compare_until, "end of the compared window in s (default: all that both have)");
   app.add_option("--dump-osnsp", o.dump,
                  "file for the one-step non-smooth problem of every internal step (W, q, cones, solution), JSON lines");
@@ -81,7 +86,8 @@ Setting parse_setting(const std::string& text) {
   double value = NAN;
   const auto [stop, failure] = std::from_chars(begin, end, value);
   if (equals == 0 || begin == end || failure != std::errc{} || stop != end || !std::isfinite(value))
-    throw InputError(fmt::format("--set {}: must be NAME=VALUE with a finite number, for instance --set S_Jy=0.0588", text));
+    throw InputError(
+        fmt::format("--set {}: must be NAME=VALUE with a finite number, for instance --set S_Jy=0.0588", text));
   return {text.substr(0, equals), value};
 }
 
@@ -162,18 +168,29 @@ void check_window(const Plan& plan, const std::string& name) {
 Plan make_plan(const Options& o) {
   check_range("--rate", o.rate, kSlowestRate, kFastestRate, "Hz");
   if (!o.svg.empty() && o.out.empty()) throw InputError("--svg needs --out DIR: the pictures are written there");
-  if (o.compare_until && o.compare.empty()) throw InputError("--compare-until needs --compare: there is nothing to compare with");
+  if (o.compare_until && o.compare.empty())
+    throw InputError("--compare-until needs --compare: there is nothing to compare with");
   ActionOptions options;
   for (const std::string& text : o.set) options.settings.push_back(parse_setting(text));
   options.without = o.without;
   options.damper = o.damper == "on";
   const Path action_path = o.action.empty() ? config_dir() / "grand_action.yaml" : Path(o.action);
-  const Path keystroke_path = o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
-  Plan plan{action_path, keystroke_path, options, load_action(action_path, options), read_keystroke(keystroke_path), {}, {}, 0, 0};
+  const Path keystroke_path =
+      o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
+  Plan plan{action_path,
+            keystroke_path,
+            options,
+            load_action(action_path, options),
+            read_keystroke(keystroke_path),
+            {},
+            {},
+            0,
+            0};
   if (plan.action.model.finger.body == kGround)
     throw InputError(fmt::format("{}: has no finger, so no keystroke can be played on it", action_path.string()));
   plan.duration = o.duration.value_or(plan.keystroke.end() - plan.keystroke.start());
-  check_range(o.duration ? "--duration" : keystroke_path.string() + ": duration", plan.duration, 1 / o.rate, kLongestRun, "s");
+  check_range(o.duration ? "--duration" : keystroke_path.string() + ": duration", plan.duration, 1 / o.rate,
+              kLongestRun, "s");
   plan.compare_until = o.compare_until.value_or(INFINITY);
   if (std::isnan(plan.compare_until)) throw InputError("--compare-until = nan, must be a time in s");
   plan.summary.action = action_path.string();
@@ -204,7 +221,8 @@ struct Outputs {
     if (o.dump.empty()) return;
     std::error_code ignored;
     for (const Path& used : {Path(o.action), Path(o.keystroke), Path(o.compare), Path(o.out) / "trajectory.csv.part"})
-      if (std::filesystem::equivalent(used, o.dump, ignored) || std::filesystem::equivalent(used, o.dump + ".part", ignored))
+      if (std::filesystem::equivalent(used, o.dump, ignored) ||
+          std::filesystem::equivalent(used, o.dump + ".part", ignored))
         throw InputError(fmt::format("--dump-osnsp {}: is another file of this run, must be one of its own", o.dump));
     problems.emplace(o.dump);
   }
@@ -276,7 +294,8 @@ void play(const Options& o, Plan& plan, Outputs& outputs) {
     outputs.commit();
   }
   fmt::print("{}", describe(summary));
-  if (trajectory) fmt::print("files        {0}/report.html, {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml\n", o.out);
+  if (trajectory)
+    fmt::print("files        {0}/report.html, {0}/trajectory.csv, {0}/events.yaml, {0}/summary.yaml\n", o.out);
   for (const Path& picture : pictures) fmt::print("picture      {}\n", picture.string());
   if (problems) fmt::print("problems     {}\n", o.dump);
 }
@@ -303,7 +322,9 @@ void complain(std::string message) {
 int main(int argc, char** argv) {
   CLI::App app("Plays a keystroke on a keyboard action and tells what the finger feels.", "erard-sim");
   app.set_version_flag("--version", fmt::format("erard-sim {}", erard::kVersion));
-  app.footer("All values are SI. Exit codes: 0 done, 1 the run failed, 2 bad input, 130 interrupted (what is complete is kept).");
+  app.footer(
+      "All values are SI. Exit codes: 0 done, 1 the run failed, 2 bad input, 130 interrupted (what is complete is "
+      "kept).");
   Options options;
   add_options(app, options);
   try {

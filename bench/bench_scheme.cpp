@@ -76,12 +76,14 @@ void print_axes(const ActionFile& action) {
   std::vector<std::string> all_but_knuckle = all;
   std::erase(all_but_knuckle, "JH");
   fmt::print("\n| felts on axes fixed in their carriers | piano, eta % | forte, eta % |\n|---|---|---|\n");
-  for (const auto& [label, names] : {std::pair{"all", all}, {"all but JH", all_but_knuckle}, {"JH alone", {"JH"}}, {"KW alone", {"KW"}}}) {
+  for (const auto& [label, names] :
+       {std::pair{"all", all}, {"all but JH", all_but_knuckle}, {"JH alone", {"JH"}}, {"KW alone", {"KW"}}}) {
     fmt::print("| {} |", label);
     for (const auto& [name, release] : {std::pair{"piano", 0.220}, {"forte", 0.142}}) {
       const Keystroke keystroke = read_keystroke(config_dir() / "keystrokes" / (std::string(name) + ".csv"));
       const ForceCurve normal = play(action, keystroke, 0.5, 16).force;
-      fmt::print(" {:.2f} |", 100 * relative_error(normal, play(fix_axes(action, names), keystroke, 0.5, 16).force, release));
+      fmt::print(" {:.2f} |",
+                 100 * relative_error(normal, play(fix_axes(action, names), keystroke, 0.5, 16).force, release));
     }
     fmt::print("\n");
   }
@@ -92,8 +94,9 @@ void print_axes(const ActionFile& action) {
 int main(int argc, char** argv) {
   const std::filesystem::path references = argc > 1 ? argv[1] : "tests/reference";
   const ActionFile action = load_action(config_dir() / "grand_action.yaml");
-  fmt::print("| stroke | theta | steps a period | eta % / RMS N / largest N, own converged run | eta % before the check | "
-             "eta % independent | us a period |\n|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| stroke | theta | steps a period | eta % / RMS N / largest N, own converged run | eta % before the check | "
+      "eta % independent | us a period |\n|---|---|---|---|---|---|---|\n");
   for (const auto& [name, release, check] : {std::tuple{"piano", 0.220, 0.139}, {"forte", 0.142, 0.088}}) {
     const Keystroke keystroke = read_keystroke(config_dir() / "keystrokes" / (std::string(name) + ".csv"));
     const ForceCurve reference = read_force_curve(references / (std::string(name) + ".csv"));

@@ -68,7 +68,8 @@ TEST(ActionFile, BodiesAndTheirFeltsKeepTheTotalsOfTheFile) {
   double mass = body(action, "H").mass, inertia = body(action, "H").inertia;
   Vector2 moment = mass * body(action, "H").centre;
   // felts carried by the hammer and the points where it is touched there
-  for (const auto& [name, x, y] : {std::tuple{"JH", -0.0208951479, -0.0179192185}, {"LH", -0.02, -0.018}, {"HG", -0.13, 0.028}}) {
+  for (const auto& [name, x, y] :
+       {std::tuple{"JH", -0.0208951479, -0.0179192185}, {"LH", -0.02, -0.018}, {"HG", -0.13, 0.028}}) {
     const double m = contact(action, name).felt.mass;
     mass += m;
     moment += m * Vector2(x, y);
@@ -106,14 +107,16 @@ TEST(ActionFile, DamperOffClampsItAndItsContacts) {
 
 struct BadFile {
   const char* what;
-  std::string from, to;              // edit
-  std::string line_of;               // text whose line must be named; empty: no particular one
-  std::vector<std::string> pieces;   // of the sentence
+  std::string from, to;             // edit
+  std::string line_of;              // text whose line must be named; empty: no particular one
+  std::vector<std::string> pieces;  // of the sentence
 };
 
 int line_number(const std::string& text, const std::string& piece) {
   const std::size_t at = text.find(piece);
-  return at == std::string::npos ? -1 : 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+  return at == std::string::npos
+             ? -1
+             : 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
 }
 
 std::string complaint_of(const std::filesystem::path& file, const ActionOptions& options = {}) {
@@ -129,40 +132,122 @@ TEST(ActionFile, BadFilesAreRefusedInOneSentenceWithTheirPlace) {
   const std::string good = test::read_text(kGrandAction);
   const std::vector<BadFile> cases{
       {"missing key", "      inertia: I_W\n", "", "    W:\n", {"inertia", "missing", "bodies W"}},
-      {"misspelt key", "      inertia: I_W\n", "      inertai: I_W\n", "inertai: I_W", {"inertai is not known", "did you mean inertia?"}},
-      {"unknown key", "      what: whippen\n", "      what: whippen\n      colour: I_W\n", "colour: I_W", {"colour", "not known"}},
-      {"doubled key", "      inertia: I_W\n", "      inertia: I_W\n      inertia: I_K\n", "inertia: I_K\n      viscous: c_vW", {"inertia", "twice"}},
+      {"misspelt key",
+       "      inertia: I_W\n",
+       "      inertai: I_W\n",
+       "inertai: I_W",
+       {"inertai is not known", "did you mean inertia?"}},
+      {"unknown key",
+       "      what: whippen\n",
+       "      what: whippen\n      colour: I_W\n",
+       "colour: I_W",
+       {"colour", "not known"}},
+      {"doubled key",
+       "      inertia: I_W\n",
+       "      inertia: I_W\n      inertia: I_K\n",
+       "inertia: I_K\n      viscous: c_vW",
+       {"inertia", "twice"}},
       {"unknown section", "mechanism:\n", "machine: {}\nmechanism:\n", "machine:", {"machine", "not known"}},
-      {"unknown parameter", "inertia: I_W\n", "inertia: I_Wh\n", "inertia: I_Wh", {"inertia = I_Wh", "must name a parameter", "I_W"}},
+      {"unknown parameter",
+       "inertia: I_W\n",
+       "inertia: I_Wh\n",
+       "inertia: I_Wh",
+       {"inertia = I_Wh", "must name a parameter", "I_W"}},
       {"nan", "m_H: {value: 0.0125233504", "m_H: {value: nan", "m_H:", {"m_H = nan", "finite number"}},
       {"infinity", "m_H: {value: 0.0125233504", "m_H: {value: .inf", "m_H:", {"m_H = .inf", "finite number"}},
       {"word", "m_H: {value: 0.0125233504", "m_H: {value: heavy", "m_H:", {"m_H = heavy", "finite number"}},
       {"trailing unit", "m_H: {value: 0.0125233504", "m_H: {value: 12.5 g", "m_H:", {"m_H = 12.5 g", "finite number"}},
       {"list for a number", "m_H: {value: 0.0125233504", "m_H: {value: [1, 2]", "m_H:", {"m_H", "finite number"}},
-      {"negative mass", "m_H: {value: 0.0125233504", "m_H: {value: -0.0125", "m_H:", {"m_H = -0.0125 kg", "must be > 0"}},
+      {"negative mass",
+       "m_H: {value: 0.0125233504",
+       "m_H: {value: -0.0125",
+       "m_H:",
+       {"m_H = -0.0125 kg", "must be > 0"}},
       {"zero radius", "W_Krho: {value: 0.012", "W_Krho: {value: 0", "W_Krho:", {"W_Krho = 0 m", "must be > 0"}},
       {"negative friction", "nu_JH: {value: 0.2", "nu_JH: {value: -0.2", "nu_JH:", {"nu_JH = -0.2", "must be >= 0"}},
       {"exponent below one", "r_KW: {value: 2.7", "r_KW: {value: 0.5", "r_KW:", {"r_KW = 0.5", "must be >= 1"}},
-      {"corner larger than the jack's top", "J_Hrc: {value: 0.0004", "J_Hrc: {value: 0.004", "J_Hrc:", {"J_Hrc = 0.004 m", "half the length"}},
-      {"felt heavier than its hammer", "m_fHG: {value: 1.28e-05", "m_fHG: {value: 0.02", "m_fHG:", {"m_fHG = 0.02 kg", "lighter"}},
-      {"wrong unit", "m_H: {value: 0.0125233504, unit: \"kg\"", "m_H: {value: 0.0125233504, unit: \"g\"", "m_H:", {"m_H", "unit g", "must have kg"}},
-      {"missing source", "m_H: {value: 0.0125233504, unit: \"kg\", source:", "m_H: {value: 0.0125233504, unit: \"kg\", origin:", "m_H:", {"source", "missing"}},
-      {"parameter that nothing uses", "  # finger\n", "  # finger\n  S_Jz: {value: 1, unit: \"m\", source: \"x\"}\n", "S_Jz:", {"S_Jz", "used nowhere"}},
-      {"contact that names no body", "a: {body: J, shape: segment, at: [J_Hx", "a: {body: X, shape: segment, at: [J_Hx", "a: {body: X", {"body = X", "must be a body"}},
-      {"contact of a body with itself", "b: {body: H, shape: circle, at: [H_Jx", "b: {body: J, shape: circle, at: [H_Jx", "b: {body: J, shape: circle, at: [H_Jx", {"JH", "itself"}},
-      {"two segments", "b: {body: H, shape: circle, at: [H_Jx, H_Jy], direction: H_Jtheta, radius: H_Jrho}",
-       "b: {body: H, shape: segment, at: [H_Jx, H_Jy], direction: H_Jtheta, length: H_Jrho}", "b: {body: H, shape: segment", {"JH", "circle"}},
-      {"loop in the tree", "      what: whippen\n      parent: S\n", "      what: whippen\n      parent: J\n", "parent: J", {"parent = J", "declared above"}},
-      {"its own parent", "      what: whippen\n      parent: S\n", "      what: whippen\n      parent: W\n", "parent: W\n      joint: hinge\n      origin: [W_O", {"parent = W", "declared above"}},
-      {"unknown joint", "      what: whippen\n      parent: S\n      joint: hinge\n", "      what: whippen\n      parent: S\n      joint: ball\n", "joint: ball", {"joint = ball", "hinge, prismatic"}},
+      {"corner larger than the jack's top",
+       "J_Hrc: {value: 0.0004",
+       "J_Hrc: {value: 0.004",
+       "J_Hrc:",
+       {"J_Hrc = 0.004 m", "half the length"}},
+      {"felt heavier than its hammer",
+       "m_fHG: {value: 1.28e-05",
+       "m_fHG: {value: 0.02",
+       "m_fHG:",
+       {"m_fHG = 0.02 kg", "lighter"}},
+      {"wrong unit",
+       "m_H: {value: 0.0125233504, unit: \"kg\"",
+       "m_H: {value: 0.0125233504, unit: \"g\"",
+       "m_H:",
+       {"m_H", "unit g", "must have kg"}},
+      {"missing source",
+       "m_H: {value: 0.0125233504, unit: \"kg\", source:",
+       "m_H: {value: 0.0125233504, unit: \"kg\", origin:",
+       "m_H:",
+       {"source", "missing"}},
+      {"parameter that nothing uses",
+       "  # finger\n",
+       "  # finger\n  S_Jz: {value: 1, unit: \"m\", source: \"x\"}\n",
+       "S_Jz:",
+       {"S_Jz", "used nowhere"}},
+      {"contact that names no body",
+       "a: {body: J, shape: segment, at: [J_Hx",
+       "a: {body: X, shape: segment, at: [J_Hx",
+       "a: {body: X",
+       {"body = X", "must be a body"}},
+      {"contact of a body with itself",
+       "b: {body: H, shape: circle, at: [H_Jx",
+       "b: {body: J, shape: circle, at: [H_Jx",
+       "b: {body: J, shape: circle, at: [H_Jx",
+       {"JH", "itself"}},
+      {"two segments",
+       "b: {body: H, shape: circle, at: [H_Jx, H_Jy], direction: H_Jtheta, radius: H_Jrho}",
+       "b: {body: H, shape: segment, at: [H_Jx, H_Jy], direction: H_Jtheta, length: H_Jrho}",
+       "b: {body: H, shape: segment",
+       {"JH", "circle"}},
+      {"loop in the tree",
+       "      what: whippen\n      parent: S\n",
+       "      what: whippen\n      parent: J\n",
+       "parent: J",
+       {"parent = J", "declared above"}},
+      {"its own parent",
+       "      what: whippen\n      parent: S\n",
+       "      what: whippen\n      parent: W\n",
+       "parent: W\n      joint: hinge\n      origin: [W_O",
+       {"parent = W", "declared above"}},
+      {"unknown joint",
+       "      what: whippen\n      parent: S\n      joint: hinge\n",
+       "      what: whippen\n      parent: S\n      joint: ball\n",
+       "joint: ball",
+       {"joint = ball", "hinge, prismatic"}},
       {"unknown event", "{let_off: JG,", "{letoff: JG,", "events:", {"letoff", "did you mean let_off"}},
-      {"jack with less inertia than its mass has", "J_Gy: {value: 0,", "J_Gy: {value: 0.03,", "I_J:", {"I_J = 1.5e-06", "at least"}},
-      {"damper contact elsewhere", "contacts: [KD, DG]", "contacts: [KD, HG]", "damper:", {"HG", "contacts of its body"}},
+      {"jack with less inertia than its mass has",
+       "J_Gy: {value: 0,",
+       "J_Gy: {value: 0.03,",
+       "I_J:",
+       {"I_J = 1.5e-06", "at least"}},
+      {"damper contact elsewhere",
+       "contacts: [KD, DG]",
+       "contacts: [KD, HG]",
+       "damper:",
+       {"HG", "contacts of its body"}},
       {"hammer that never meets the string", "hammer: H}", "hammer: L}", "events:", {"hammer = L", "HG"}},
-      {"name with a comma", "    W:\n      what: whippen", "    \"W,x\":\n      what: whippen", "\"W,x\"", {"W,x", "letters, digits"}},
-      {"friction and restitution", "      felt: {carrier: b, stiffness: k_JG, exponent: r_JG, damping: b_JG, mass: m_fJG, axis: contact_normal}\n", "      restitution: nu_JG\n",
-       "restitution: nu_JG", {"JG", "only one of them"}},
-      {"name too long", "name: grand action", "name: the grand action of 1821", "name: the grand", {"name", "at most 15"}},
+      {"name with a comma",
+       "    W:\n      what: whippen",
+       "    \"W,x\":\n      what: whippen",
+       "\"W,x\"",
+       {"W,x", "letters, digits"}},
+      {"friction and restitution",
+       "      felt: {carrier: b, stiffness: k_JG, exponent: r_JG, damping: b_JG, mass: m_fJG, axis: contact_normal}\n",
+       "      restitution: nu_JG\n",
+       "restitution: nu_JG",
+       {"JG", "only one of them"}},
+      {"name too long",
+       "name: grand action",
+       "name: the grand action of 1821",
+       "name: the grand",
+       {"name", "at most 15"}},
       {"event of no contact", "{let_off: JG,", "{let_off: JX,", "{let_off: JX", {"let_off = JX", "must be a contact"}},
   };
   const test::TemporaryFolder folder;
@@ -176,7 +261,8 @@ TEST(ActionFile, BadFilesAreRefusedInOneSentenceWithTheirPlace) {
     EXPECT_EQ(said.find('\n'), std::string::npos) << bad.what << ": " << said;
     EXPECT_NE(said.find(file.string() + ":" + std::to_string(line_number(text, bad.line_of)) + ": "), std::string::npos)
         << bad.what << " (line " << line_number(text, bad.line_of) << "): " << said;
-    for (const std::string& piece : bad.pieces) EXPECT_NE(said.find(piece), std::string::npos) << bad.what << ": " << said;
+    for (const std::string& piece : bad.pieces)
+      EXPECT_NE(said.find(piece), std::string::npos) << bad.what << ": " << said;
   }
 }
 
@@ -195,7 +281,10 @@ TEST(ActionFile, FilesThatAreNoActionsAreRefusedInOneSentence) {
   refuse("- 1\n- 2\n", "must be a mapping");
   refuse("parameters: {}\n", "mechanism is missing");
   refuse("parameters: [1]\nmechanism: {}\n", "parameters");
-  refuse(std::string("\x7f""ELF\x02\x01\x00\x00", 8), "not text");
+  refuse(std::string("\x7f"
+                     "ELF\x02\x01\x00\x00",
+                     8),
+         "not text");
   refuse("a: [1, 2\nb: {c", "not valid YAML");
   refuse("\t\t: : :", "");
   refuse(good + "\n---\na: 1\n", "second YAML document");
@@ -227,7 +316,8 @@ TEST(ActionFile, TooManyBodiesAreToldAgainstTheCapacity) {
       "  g: {value: 9.81, unit: \"m/s^2\", source: \"x\"}\nmechanism:\n  name: chain\n  gravity: g\n  bodies:\n";
   for (int i = 0; i <= kMaxBodies; ++i)
     text += "    B" + std::to_string(i) +
-            ": {what: link, parent: S, joint: hinge, origin: [z, z], mass: m, centre: [z, z], inertia: i, initial_angle: r}\n";
+            ": {what: link, parent: S, joint: hinge, origin: [z, z], mass: m, centre: [z, z], inertia: i, "
+            "initial_angle: r}\n";
   const test::TemporaryFolder folder;
   test::write_text(folder / "chain.yaml", text);
   EXPECT_NE(complaint_of(folder / "chain.yaml").find("at most " + std::to_string(kMaxBodies)), std::string::npos);

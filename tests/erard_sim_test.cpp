@@ -21,7 +21,8 @@ using test::write_text;
 TEST(ErardSim, WithoutArgumentsPlaysTheDefaultStrikeAndTellsAPerson) {
   const auto outcome = run_program("erard-sim");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
-  for (const char* word : {"peak", "escapement", "hammer meets string", "m/s", "faster than real time", "recorded_fast"})
+  for (const char* word :
+       {"peak", "escapement", "hammer meets string", "m/s", "faster than real time", "recorded_fast"})
     EXPECT_NE(outcome.out.find(word), std::string::npos) << outcome.out;
 }
 
@@ -32,12 +33,13 @@ TEST(ErardSim, WritesTrajectoryEventsAndSummary) {
   std::istringstream trajectory(read_text(out + "/trajectory.csv"));
   std::string header, row;
   std::getline(trajectory, header);
-  EXPECT_EQ(header,
-            "t_s,input,y_m,force_N,theta_K,theta_W,theta_J,theta_L,theta_H,theta_D,omega_K,omega_W,omega_J,omega_L,omega_H,"
-            "omega_D,delta_KS+_m,delta_KW_m,delta_KS-_m,delta_KH_m,delta_KD_m,delta_WJ_m,delta_WL_m,delta_JG_m,delta_JL_m,"
-            "delta_JH_m,delta_LG_m,delta_LH_m,delta_HG_m,delta_DG_m,normal_KS+_N,normal_KW_N,normal_KS-_N,normal_KH_N,"
-            "normal_KD_N,normal_WJ_N,normal_WL_N,normal_JG_N,normal_JL_N,normal_JH_N,normal_LG_N,normal_LH_N,normal_HG_N,"
-            "normal_DG_N");
+  EXPECT_EQ(
+      header,
+      "t_s,input,y_m,force_N,theta_K,theta_W,theta_J,theta_L,theta_H,theta_D,omega_K,omega_W,omega_J,omega_L,omega_H,"
+      "omega_D,delta_KS+_m,delta_KW_m,delta_KS-_m,delta_KH_m,delta_KD_m,delta_WJ_m,delta_WL_m,delta_JG_m,delta_JL_m,"
+      "delta_JH_m,delta_LG_m,delta_LH_m,delta_HG_m,delta_DG_m,normal_KS+_N,normal_KW_N,normal_KS-_N,normal_KH_N,"
+      "normal_KD_N,normal_WJ_N,normal_WL_N,normal_JG_N,normal_JL_N,normal_JH_N,normal_LG_N,normal_LH_N,normal_HG_N,"
+      "normal_DG_N");
   int rows = 0;
   while (std::getline(trajectory, row)) {
     ++rows;
@@ -59,7 +61,10 @@ TEST(ErardSim, WritesTrajectoryEventsAndSummary) {
 TEST(ErardSim, TwoRunsGiveTheSameBytes) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"})
-    ASSERT_EQ(run_program("erard-sim --out " + (folder / name).string() + " --dump-osnsp " + (folder / name).string() + ".json").exit_code, 0);
+    ASSERT_EQ(run_program("erard-sim --out " + (folder / name).string() + " --dump-osnsp " + (folder / name).string() +
+                          ".json")
+                  .exit_code,
+              0);
   for (const char* file : {"/trajectory.csv", "/events.yaml", ".json"}) {
     const std::string a = read_text((folder / "a").string() + file);
     EXPECT_FALSE(a.empty());
@@ -68,8 +73,9 @@ TEST(ErardSim, TwoRunsGiveTheSameBytes) {
 }
 
 TEST(ErardSim, ComparesWithAForceCurve) {
-  const auto outcome = run_program("erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/piano.csv --compare " ERARD_REFERENCE_DIR
-                                   "/piano.csv --compare-until 0.22");
+  const auto outcome =
+      run_program("erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/piano.csv --compare " ERARD_REFERENCE_DIR
+                  "/piano.csv --compare-until 0.22");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.error;
   EXPECT_NE(outcome.out.find("eta 0."), std::string::npos) << outcome.out;
 }
@@ -92,7 +98,8 @@ TEST(ErardSim, DrivesMustFitTheirFile) {
   const TemporaryFolder folder;
   write_text(folder / "force.csv", "t_s,force_N\n0,0\n0.05,1\n0.1,1\n");
   EXPECT_EQ(run_program("erard-sim --keystroke " + (folder / "force.csv").string()).exit_code, 0);
-  expect_one_sentence(run_program("erard-sim --drive piston --keystroke " + (folder / "force.csv").string()), {"force.csv", "force_N", "piston"});
+  expect_one_sentence(run_program("erard-sim --drive piston --keystroke " + (folder / "force.csv").string()),
+                      {"force.csv", "force_N", "piston"});
   expect_one_sentence(run_program("erard-sim --drive force"), {"position_m", "force"});
   EXPECT_EQ(run_program("erard-sim --drive key").exit_code, 0);
 }
@@ -120,7 +127,8 @@ TEST(ErardSim, PlacesThatCannotBeUsedAreToldInOneSentence) {
   expect_one_sentence(run_program("erard-sim --action /no/such/file.yaml"), {"/no/such/file.yaml"});
   expect_one_sentence(run_program("erard-sim --compare /no/such/file.csv"), {"/no/such/file.csv"});
   expect_one_sentence(run_program("erard-sim --dump-osnsp /no/such/place/p.json"), {"/no/such/place/p.json"});
-  expect_one_sentence(run_program("erard-sim --dump-osnsp " + folder.path().string()), {folder.path().string(), "is a folder"});
+  expect_one_sentence(run_program("erard-sim --dump-osnsp " + folder.path().string()),
+                      {folder.path().string(), "is a folder"});
   std::filesystem::create_directories(folder / "run" / "summary.yaml");
   expect_one_sentence(run_program("erard-sim --out " + (folder / "run").string()), {"summary.yaml", "is a folder"});
   EXPECT_FALSE(std::filesystem::exists(folder / "run" / "trajectory.csv"));
@@ -129,7 +137,8 @@ TEST(ErardSim, PlacesThatCannotBeUsedAreToldInOneSentence) {
 TEST(ErardSim, DumpedProblemsAreThoseThatWereSolved) {
   const TemporaryFolder folder;
   const std::string dump = folder / "problems.json";
-  ASSERT_EQ(run_program("erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/forte.csv --dump-osnsp " + dump).exit_code, 0);
+  ASSERT_EQ(
+      run_program("erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/forte.csv --dump-osnsp " + dump).exit_code, 0);
   std::istringstream lines(read_text(dump));
   std::string line;
   int count = 0;
@@ -149,20 +158,24 @@ TEST(ErardSim, DumpedProblemsAreThoseThatWereSolved) {
       const YAML::Node cone = node["cone"][i];
       const std::string kind = cone["kind"].as<std::string>();
       if (kind == "half_line") problem.cone[i] = {ConeKind::half_line, -1, 0, false};
-      if (kind == "friction") problem.cone[i] = {ConeKind::friction, cone["normal"].as<int>(), cone["mu"].as<double>(), false};
-      if (kind == "interval") problem.cone[i] = {ConeKind::interval, -1, cone["bound"].as<double>(), cone["angular"].as<bool>()};
+      if (kind == "friction")
+        problem.cone[i] = {ConeKind::friction, cone["normal"].as<int>(), cone["mu"].as<double>(), false};
+      if (kind == "interval")
+        problem.cone[i] = {ConeKind::interval, -1, cone["bound"].as<double>(), cone["angular"].as<bool>()};
     }
     worst = std::max(worst, residual(problem, r));
   }
-  EXPECT_EQ(count, 4796);     // 1199 periods of four steps
-  EXPECT_LT(worst, 1.1e-6);   // the tolerance of the sweeps
+  EXPECT_EQ(count, 4796);    // 1199 periods of four steps
+  EXPECT_LT(worst, 1.1e-6);  // the tolerance of the sweeps
 }
 
 TEST(ErardSim, NothingToCompareIsNoAgreement) {
   const TemporaryFolder folder;
-  expect_one_sentence(run_program("erard-sim --compare " ERARD_REFERENCE_DIR "/piano.csv --compare-until -1"), {"--compare", "must overlap"});
+  expect_one_sentence(run_program("erard-sim --compare " ERARD_REFERENCE_DIR "/piano.csv --compare-until -1"),
+                      {"--compare", "must overlap"});
   write_text(folder / "late.csv", "t_s,force_N\n100,1\n101,1\n");
-  expect_one_sentence(run_program("erard-sim --compare " + (folder / "late.csv").string()), {"late.csv", "must overlap"});
+  expect_one_sentence(run_program("erard-sim --compare " + (folder / "late.csv").string()),
+                      {"late.csv", "must overlap"});
   expect_one_sentence(run_program("erard-sim --compare-until 0.1"), {"--compare-until", "--compare"});
 }
 
@@ -172,18 +185,22 @@ TEST(ErardSim, KeystrokesMustFitTheRun) {
   expect_one_sentence(run_program("erard-sim --keystroke " + (folder / "long.csv").string()), {"long.csv", "3600 s"});
   EXPECT_EQ(run_program("erard-sim --duration 0.1 --keystroke " + (folder / "long.csv").string()).exit_code, 0);
   write_text(folder / "short.csv", "t_s,position_m\n0,0\n0.00001,0.000001\n");
-  expect_one_sentence(run_program("erard-sim --keystroke " + (folder / "short.csv").string()), {"short.csv", "duration"});
+  expect_one_sentence(run_program("erard-sim --keystroke " + (folder / "short.csv").string()),
+                      {"short.csv", "duration"});
   write_text(folder / "jump.csv", "t_s,position_m\n0,0.01\n0.1,0.01\n");
-  expect_one_sentence(run_program("erard-sim --drive key --keystroke " + (folder / "jump.csv").string()), {"jump.csv", "rest"});
+  expect_one_sentence(run_program("erard-sim --drive key --keystroke " + (folder / "jump.csv").string()),
+                      {"jump.csv", "rest"});
 }
 
 TEST(ErardSim, FilesOfOneRunMustNotBeTheSame) {
   const TemporaryFolder folder;
   const std::string out = folder / "run";
-  expect_one_sentence(run_program("erard-sim --out " + out + " --dump-osnsp " + out + "/trajectory.csv"), {"--dump-osnsp", "another file"});
+  expect_one_sentence(run_program("erard-sim --out " + out + " --dump-osnsp " + out + "/trajectory.csv"),
+                      {"--dump-osnsp", "another file"});
   write_text(folder / "k.csv", "t_s,position_m\n0,0\n0.1,0.001\n");
   const std::string k = folder / "k.csv";
-  expect_one_sentence(run_program("erard-sim --keystroke " + k + " --dump-osnsp " + k), {"--dump-osnsp", "another file"});
+  expect_one_sentence(run_program("erard-sim --keystroke " + k + " --dump-osnsp " + k),
+                      {"--dump-osnsp", "another file"});
 }
 
 TEST(ErardSim, MessagesStayOnOneLineWhateverTheyQuote) {
@@ -193,9 +210,7 @@ TEST(ErardSim, MessagesStayOnOneLineWhateverTheyQuote) {
   expect_one_sentence(run_program("erard-sim --set m_H=0x1"), {"m_H=0x1"});
 }
 
-TEST(ErardSim, ALostSummaryIsAFailure) {
-  EXPECT_EQ(run_program("erard-sim --duration 0.1 >/dev/full").exit_code, 1);
-}
+TEST(ErardSim, ALostSummaryIsAFailure) { EXPECT_EQ(run_program("erard-sim --duration 0.1 >/dev/full").exit_code, 1); }
 
 TEST(ErardSim, CoarseStepsAreTold) {
   EXPECT_NE(run_program("erard-sim --rate 400 --substeps 1").out.find("NOTE"), std::string::npos);
@@ -214,7 +229,8 @@ TEST(ErardSim, InterruptKeepsWhatIsComplete) {
   const std::string out = folder / "run";
   // the program itself is in the foreground of its shell; timeout sends it what Ctrl-C sends
   const auto outcome = run_program("erard-sim --version >/dev/null; timeout -s INT 1 " ERARD_PROGRAM_DIR
-                                   "/erard-sim --duration 3600 --out " + out + "; echo code $?");
+                                   "/erard-sim --duration 3600 --out " +
+                                   out + "; echo code $?");
   EXPECT_NE(outcome.out.find("INTERRUPTED"), std::string::npos) << outcome.out << outcome.error;
   const YAML::Node summary = YAML::LoadFile(out + "/summary.yaml");
   EXPECT_FALSE(summary["complete"].as<bool>());
@@ -232,8 +248,9 @@ TEST(ErardSim, InterruptKeepsWhatIsComplete) {
 TEST(ErardSim, HelpNamesUnitsDefaultsAndExitCodes) {
   const auto outcome = run_program("erard-sim --help");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* word : {"--action", "--keystroke", "--drive", "--rate", "Hz", "--substeps", "--duration", "--without", "--set",
-                           "--damper", "--out", "--compare", "--dump-osnsp", "Exit codes", "2000"})
+  for (const char* word :
+       {"--action", "--keystroke", "--drive", "--rate", "Hz", "--substeps", "--duration", "--without", "--set",
+        "--damper", "--out", "--compare", "--dump-osnsp", "Exit codes", "2000"})
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   EXPECT_NE(run_program("erard-sim --version").out.find("erard-sim 0."), std::string::npos);
 }

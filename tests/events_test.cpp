@@ -16,8 +16,9 @@ std::vector<std::string> names(const test::Stroke& stroke, int strike) {
 TEST(Events, APianoStrokeHasEachOnceInTheOrderOfTheThesis) {
   // thesis 6.4.1: (b) let-off, escapement, (d) string before (c) rail in a piano stroke here, (e) check, (f) return
   const auto stroke = test::play(test::grand_action(), test::keystroke("piano"));
-  const std::vector<std::string> expected{"jack_meets_let_off", "escapement",       "hammer_meets_string", "key_meets_front_rail",
-                                          "hammer_checked",     "jack_returned",    "repetition_ready"};
+  const std::vector<std::string> expected{"jack_meets_let_off",   "escapement",     "hammer_meets_string",
+                                          "key_meets_front_rail", "hammer_checked", "jack_returned",
+                                          "repetition_ready"};
   EXPECT_EQ(names(stroke, 1), expected);
 }
 
@@ -48,7 +49,8 @@ TEST(Events, WithoutStringTheEscapementIsStillTold) {
 
 TEST(Events, DoNotDependOnTheClock) {
   const Keystroke forte = test::keystroke("forte");
-  std::vector<double> times(forte.times().begin(), forte.times().end()), values(forte.values().begin(), forte.values().end());
+  std::vector<double> times(forte.times().begin(), forte.times().end()),
+      values(forte.values().begin(), forte.values().end());
   for (double& t : times) t -= 5;
   const auto early = test::play(test::grand_action(), Keystroke(KeystrokeQuantity::position, times, values));
   const auto stroke = test::play(test::grand_action(), forte);

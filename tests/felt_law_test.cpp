@@ -53,7 +53,8 @@ TEST(Felt, MeanForceOfARestingFeltIsTheLaw) {
 TEST(Felt, SlopeIsTheDerivativeOfTheMeanForce) {
   const double h = 1.25e-4, e = 1e-10;
   for (const auto& [d0, d1] : {std::pair{1e-4, 3e-4}, {3e-4, 1e-4}, {0.0, 2e-4}, {2e-4, 2.00005e-4}, {-1e-4, 1e-4}}) {
-    const double slope = (mean_felt_force(kFelt, d0, d1 + e, h).force - mean_felt_force(kFelt, d0, d1 - e, h).force) / (2 * e);
+    const double slope =
+        (mean_felt_force(kFelt, d0, d1 + e, h).force - mean_felt_force(kFelt, d0, d1 - e, h).force) / (2 * e);
     // central difference: rounding 1e-16 F / e = 1e-5 of the slope
     EXPECT_NEAR(mean_felt_force(kFelt, d0, d1, h).slope / slope, 1, 1e-4);
   }

@@ -37,7 +37,8 @@ TEST(Distance, PastTheEndOfASegmentIsTheDistanceToItsCorner) {
 }
 
 TEST(Distance, IsTwoSided) {
-  EXPECT_DOUBLE_EQ(separate(circle(0, 0.7, 0.5), segment(0, 0, 0, 1)).gap, separate(circle(0, -0.7, 0.5), segment(0, 0, 0, 1)).gap);
+  EXPECT_DOUBLE_EQ(separate(circle(0, 0.7, 0.5), segment(0, 0, 0, 1)).gap,
+                   separate(circle(0, -0.7, 0.5), segment(0, 0, 0, 1)).gap);
 }
 
 TEST(Distance, IsContinuousAroundACorner) {

@@ -188,8 +188,8 @@ TEST(Reference, ForceAgreesAtTwoKilohertz) {
        {std::tuple{"piano", &piano(), 0.220, 0.139}, {"forte", &forte(), 0.142, 0.088}}) {
     EXPECT_LT(eta(*stroke, name, release), 0.01) << name;  // 5 % is asked; 0.2 to 0.4 % is where it stands
     EXPECT_LT(eta(*stroke, name, check), 0.01) << name;
-    std::printf("%s, 2 kHz: eta %.2f %% to the release, %.2f %% to the check\n", name, 100 * eta(*stroke, name, release),
-                100 * eta(*stroke, name, check));
+    std::printf("%s, 2 kHz: eta %.2f %% to the release, %.2f %% to the check\n", name,
+                100 * eta(*stroke, name, release), 100 * eta(*stroke, name, check));
   }
 }
 
@@ -199,8 +199,8 @@ TEST(Reference, ForceAgreesAtTwentyKilohertz) {
   for (const auto& [name, release, check] : {std::tuple{"piano", 0.220, 0.139}, {"forte", 0.142, 0.088}}) {
     const Stroke stroke = test::play(test::grand_action(), test::keystroke(name), fine);
     EXPECT_LT(eta(stroke, name, release), 0.02) << name;
-    std::printf("%s, 20 kHz: eta %.2f %% to the release, %.2f %% to the check\n", name, 100 * eta(stroke, name, release),
-                100 * eta(stroke, name, check));
+    std::printf("%s, 20 kHz: eta %.2f %% to the release, %.2f %% to the check\n", name,
+                100 * eta(stroke, name, release), 100 * eta(stroke, name, check));
   }
 }
 
@@ -256,9 +256,15 @@ TEST(Reference, FeltMassHardlyMatters) {
 
 TEST(Contacts, ClosedContactsDoNotPenetrate) {
   double closed = 0, closing = 0;
-  for (const auto& [name, damper] : {std::pair{"piano", false}, {"forte", false}, {"repetition", false}, {"recorded_fast", false},
-                                     {"recorded_fast_free_release", false}, {"recorded_medium", false},
-                                     {"recorded_repeated", false}, {"forte", true}, {"recorded_fast", true}}) {
+  for (const auto& [name, damper] : {std::pair{"piano", false},
+                                     {"forte", false},
+                                     {"repetition", false},
+                                     {"recorded_fast", false},
+                                     {"recorded_fast_free_release", false},
+                                     {"recorded_medium", false},
+                                     {"recorded_repeated", false},
+                                     {"forte", true},
+                                     {"recorded_fast", true}}) {
     ActionOptions options;
     options.damper = damper;
     const ActionFile action = test::grand_action(options);
@@ -283,7 +289,8 @@ TEST(Contacts, ClosedContactsDoNotPenetrate) {
     };
     const long periods = std::lround((keystroke.end() - keystroke.start()) / settings.period);
     state.time = keystroke.start();
-    for (long i = 0; i < periods; ++i) tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, measure);
+    for (long i = 0; i < periods; ++i)
+      tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, measure);
   }
   EXPECT_LT(closed, 1e-6);
   EXPECT_LT(closing, 5e-6);
@@ -301,12 +308,15 @@ TEST(Energy, OfTheReleasedActionNeverGrows) {
     State state = rest_state(mechanism, settings.scheme.time_step);
     Workspace work;
     const auto ignore = [](const State&, const StepReport&, double) noexcept {};
-    while (state.time < release - 1e-9) tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore);
+    while (state.time < release - 1e-9)
+      tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore);
     settings.drive = DriveKind::none;
     std::vector<double> energy{measure_energy(mechanism, state).total()};
     for (int i = 0; i < 1000; ++i)
       tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work,
-           [&](const State& s, const StepReport&, double) noexcept { energy.push_back(measure_energy(mechanism, s).total()); });
+           [&](const State& s, const StepReport&, double) noexcept {
+             energy.push_back(measure_energy(mechanism, s).total());
+           });
     double growth = 0, above = 0;
     const std::size_t window = 80;  // internal steps of 0.125 ms in 10 ms
     for (std::size_t i = 0; i < energy.size(); ++i) {
@@ -316,7 +326,8 @@ TEST(Energy, OfTheReleasedActionNeverGrows) {
     }
     EXPECT_LE(above, 1e-9) << "released at " << release;  // rounding and linearised gaps; the motion holds 1e-2 J
     EXPECT_LE(growth, 1e-6) << "released at " << release;
-    std::printf("released at %.4f s: energy grows by %.1e J within 10 ms, %.1e J above the start\n", release, growth, above);
+    std::printf("released at %.4f s: energy grows by %.1e J within 10 ms, %.1e J above the start\n", release, growth,
+                above);
   }
 }
 
@@ -329,7 +340,8 @@ TEST(Determinism, ARunRestartedInTheMiddleGivesTheSameBits) {
   const auto go_on = [&](State& state, int periods) {
     Workspace work;
     double force = 0;
-    for (int i = 0; i < periods; ++i) force = tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore).force;
+    for (int i = 0; i < periods; ++i)
+      force = tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore).force;
     return force;
   };
   State whole = rest_state(mechanism, settings.scheme.time_step);

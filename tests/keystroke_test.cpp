@@ -310,7 +310,7 @@ TEST_F(KeystrokeFile, ReadsBackWhatItWrote) {
     write_keystroke(path("k.csv"), written, std::vector<std::string>{"source: nobody", "", "two\nlines"});
     const Keystroke read = read_keystroke(path("k.csv"));
     EXPECT_EQ(read.quantity(), quantity);
-    EXPECT_TRUE(std::ranges::equal(read.times(), written.times()));    // exact, bit for bit
+    EXPECT_TRUE(std::ranges::equal(read.times(), written.times()));  // exact, bit for bit
     EXPECT_TRUE(std::ranges::equal(read.values(), written.values()));
   }
 }
@@ -336,9 +336,10 @@ TEST(Keystroke, EveryFileThatComesWithErardIsRead) {
     if (entry.path().extension() == ".csv") {
       ++count;
       const Keystroke keystroke = read_keystroke(entry.path());
-      EXPECT_EQ(keystroke.at(keystroke.start()).value, 0) << entry.path();  // a stroke starts where y = 0
+      EXPECT_EQ(keystroke.at(keystroke.start()).value, 0) << entry.path();         // a stroke starts where y = 0
       EXPECT_NEAR(keystroke.at(keystroke.start()).rate, 0, 1e-6) << entry.path();  // [m/s] 0.1 mN through b
-      EXPECT_GT(*std::ranges::max_element(keystroke.values()), 0.0097) << entry.path();  // [m] down to the rail: 9.75 mm
+      EXPECT_GT(*std::ranges::max_element(keystroke.values()), 0.0097)
+          << entry.path();  // [m] down to the rail: 9.75 mm
     }
   EXPECT_GE(count, 8);
 }

@@ -142,9 +142,8 @@ Model lever_on_stop(double friction) {
 TEST(RigidContact, LeverFallsOnAStopAtTheHeightOfItsHinge) {
   const Mechanism mechanism = build_mechanism(lever_on_stop(0.3));
   State state = rest_state(mechanism, 5e-4);
-  test::run_free(mechanism, scheme_of(5e-4, 0.5), 2, state, [](const StepReport& report, const State&) {
-    ASSERT_NE(report.status, StepStatus::not_finite);
-  });
+  test::run_free(mechanism, scheme_of(5e-4, 0.5), 2, state,
+                 [](const StepReport& report, const State&) { ASSERT_NE(report.status, StepStatus::not_finite); });
   EXPECT_NEAR(state.x[0], std::acos(0.0), 1e-5);  // level
 }
 
@@ -163,7 +162,8 @@ TEST(Drives, WithoutFingerADriveIsRefused) {
   for (const DriveKind kind : {DriveKind::force, DriveKind::piston, DriveKind::key}) {
     State state = rest_state(mechanism, 5e-4);
     Workspace work;
-    EXPECT_EQ(step(mechanism, scheme_of(5e-4, 0.5), Drive{kind, {1, 0}, {1, 0}}, state, work).status, StepStatus::not_finite);
+    EXPECT_EQ(step(mechanism, scheme_of(5e-4, 0.5), Drive{kind, {1, 0}, {1, 0}}, state, work).status,
+              StepStatus::not_finite);
     EXPECT_EQ(state.time, 0);
   }
 }
@@ -173,7 +173,7 @@ TEST(FeltContact, BallOnFeltFindsItsStaticCompression) {
   const Mechanism mechanism = build_mechanism(test::ball_on_felt(mass, 0));
   State state = rest_state(mechanism, 1.25e-4);
   test::run_free(mechanism, test::default_scheme(), 5, state);
-  const double expected = std::pow((mass) * 9.81 / 1.6e10, 1 / 2.7);  // k d^r = m g
+  const double expected = std::pow((mass)*9.81 / 1.6e10, 1 / 2.7);  // k d^r = m g
   EXPECT_NEAR(state.x[2], expected, 1e-4 * expected);
 }
 

@@ -74,7 +74,8 @@ TEST(OneStepProblem, SolutionsObeyEveryLawAndAgreeWithLemke) {
       for (int i = 0; i < p.problem.size; ++i) {
         double scale = 0;
         for (int j = 0; j < p.problem.size; ++j)
-          if (p.problem.cone[static_cast<std::size_t>(j)].is_angular == p.problem.cone[static_cast<std::size_t>(i)].is_angular)
+          if (p.problem.cone[static_cast<std::size_t>(j)].is_angular ==
+              p.problem.cone[static_cast<std::size_t>(i)].is_angular)
             scale = std::max(scale, std::abs(p.problem.q[j]));
         worst = std::max(worst, std::abs(u[i] - v[i]) / scale);
       }
@@ -83,8 +84,8 @@ TEST(OneStepProblem, SolutionsObeyEveryLawAndAgreeWithLemke) {
   EXPECT_LT(worst, 1e-7);  // both are solved to 1e-9 of their scale; W is ill-conditioned by 1e2 at most
   EXPECT_GE(compared, 200);
   EXPECT_LE(rays, 15) << "a problem on which Lemke meets a ray is not compared";
-  std::printf("compared %d problems with Lemke (%d rays), largest difference of a velocity %.1e of its scale\n", compared,
-              rays, worst);
+  std::printf("compared %d problems with Lemke (%d rays), largest difference of a velocity %.1e of its scale\n",
+              compared, rays, worst);
 }
 
 TEST(OneStepProblem, DelassusOperatorIsSymmetricButForTheFelts) {
@@ -102,11 +103,13 @@ TEST(OneStepProblem, DefaultLimitLeavesSmallResiduals) {
     std::vector<double> residuals;
     for (const Problem& p : collect(name, 1)) residuals.push_back(residual(p.problem, p.impulse));
     std::sort(residuals.begin(), residuals.end());
-    const auto quantile = [&](double q) { return residuals[static_cast<std::size_t>(q * static_cast<double>(residuals.size() - 1))]; };
+    const auto quantile = [&](double q) {
+      return residuals[static_cast<std::size_t>(q * static_cast<double>(residuals.size() - 1))];
+    };
     EXPECT_LT(quantile(0.99), 1e-6) << name;  // what the sweeps are asked for
     EXPECT_LT(quantile(1), 1e-3) << name;     // jammed states that reach the limit
-    std::printf("%s: residual median %.1e, 99 %% %.1e, 99.9 %% %.1e, largest %.1e of %zu problems\n", name, quantile(0.5),
-                quantile(0.99), quantile(0.999), quantile(1), residuals.size());
+    std::printf("%s: residual median %.1e, 99 %% %.1e, 99.9 %% %.1e, largest %.1e of %zu problems\n", name,
+                quantile(0.5), quantile(0.99), quantile(0.999), quantile(1), residuals.size());
   }
 }
 
@@ -135,8 +138,8 @@ TEST(GaussSeidel, OneSlidingBlockIsSolvedInOneVisit) {
   problem.cone[1] = {ConeKind::friction, 0, 0.3, false};
   RowVector r = RowVector::Zero(2);
   sweep_gauss_seidel(problem, Scheme{}, r);
-  EXPECT_DOUBLE_EQ(r[0], 0.5);          // stops the approach of 1 m/s
-  EXPECT_DOUBLE_EQ(r[1], -0.3 * 0.5);   // 3 m/s are too fast to be stopped: Coulomb's limit
+  EXPECT_DOUBLE_EQ(r[0], 0.5);         // stops the approach of 1 m/s
+  EXPECT_DOUBLE_EQ(r[1], -0.3 * 0.5);  // 3 m/s are too fast to be stopped: Coulomb's limit
   EXPECT_LT(residual(problem, r), 1e-15);
 }
 

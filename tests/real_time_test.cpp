@@ -16,8 +16,8 @@ std::atomic<long> heap_calls{0};
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
                                                          void (*)(const volatile void*));
 namespace {
-const int installed = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++heap_calls; }, [](const volatile void*) { ++heap_calls; });
+const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t) { ++heap_calls; },
+                                                                [](const volatile void*) { ++heap_calls; });
 }
 #else
 // glibc's own allocator under its second name: every malloc of the process passes here, operator new and Eigen included

@@ -115,7 +115,7 @@ TEST(Recording, StaysAtTheDipOrBeyondWhereTheSensorClips) {
     for (std::size_t i = 0; i < recording.key_front.size(); ++i)
       if (recording.key_front[i] > settings.full_scale - 1e-9) {
         ++clipped;
-        EXPECT_GT(result.keystroke.values()[i], settings.dip - 1e-6) << i;  // the resolution of the sensor
+        EXPECT_GT(result.keystroke.values()[i], settings.dip - 1e-6) << i;    // the resolution of the sensor
         EXPECT_LT(result.keystroke.values()[i], settings.dip + 0.5e-3) << i;  // what rails of other actions yield
       }
     EXPECT_EQ(result.figures.clipped_count, clipped);
@@ -346,7 +346,8 @@ TEST_F(RecordingFile, CannotBeImportedWithImpossibleSettings) {
 // Exit code of erard-import in the folder of the recordings.
 int exit_code(const std::string& arguments) {
   const std::string program = ERARD_PROGRAM_DIR "/erard-import ";
-  const int status = std::system(("cd " + kRecordings.string() + " && " + program + arguments + " >/dev/null 2>&1").c_str());
+  const int status =
+      std::system(("cd " + kRecordings.string() + " && " + program + arguments + " >/dev/null 2>&1").c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

@@ -5,6 +5,7 @@
 
 namespace erard {
 
-inline constexpr std::string_view kVersion = "0.1.0";  // major.minor.patch; before 1.0 each minor may break the interface
+// major.minor.patch; before 1.0 each minor may break the interface
+inline constexpr std::string_view kVersion = "0.1.0";
 
 }  // namespace erard

@@ -14,14 +14,16 @@ constexpr std::size_t kMaxBytes = 4u << 20;  // a hundred times the grand action
 
 std::string read_text(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a folder, must be an action file (YAML)", path.string()));
+  if (std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: is a folder, must be an action file (YAML)", path.string()));
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
   std::string text(kMaxBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxBytes) throw InputError(fmt::format("{}: does not end, must be at most {} MiB", path.string(), kMaxBytes >> 20));
+  if (text.size() > kMaxBytes)
+    throw InputError(fmt::format("{}: does not end, must be at most {} MiB", path.string(), kMaxBytes >> 20));
   int line = 1;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -29,8 +31,8 @@ std::string read_text(const std::filesystem::path& path) {
     if (c == '\n' && text.compare(i + 1, 3, "---") == 0)
       throw InputError(fmt::format("{}:{}: a second YAML document begins, must hold one", path.string(), line));
     if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t')
-      throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not text, must be an action file (YAML)", path.string(), line,
-                                   static_cast<unsigned char>(c)));
+      throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not text, must be an action file (YAML)", path.string(),
+                                   line, static_cast<unsigned char>(c)));
   }
   return text;
 }
@@ -39,8 +41,8 @@ YAML::Node parse(const std::filesystem::path& path) {
   try {
     return YAML::Load(read_text(path));
   } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: is not valid YAML ({}), was the file cut short?", path.string(), error.mark.line + 1,
-                                 printable(error.msg)));
+    throw InputError(fmt::format("{}:{}: is not valid YAML ({}), was the file cut short?", path.string(),
+                                 error.mark.line + 1, printable(error.msg)));
   }
 }
 
@@ -52,7 +54,8 @@ class Builder {
   ActionFile build(YamlSection mechanism) {
     const std::string name = mechanism.word("name");
     if (name.size() > Name::kCapacity)
-      mechanism.reject(mechanism.line("name"), fmt::format("name = {}, must have at most {} letters", printable(name), Name::kCapacity));
+      mechanism.reject(mechanism.line("name"),
+                       fmt::format("name = {}, must have at most {} letters", printable(name), Name::kCapacity));
     file_.model.name = Name(name);
     file_.model.gravity = {0, -number(mechanism, "gravity", "m/s^2", Rule::not_negative)};
     read_bodies(mechanism.section("bodies"));
@@ -74,8 +77,10 @@ class Builder {
   }
   Vector2 point(YamlSection& section, const std::string& key) {
     const std::vector<std::string> names = section.words(key);
-    if (names.size() != 2) section.reject(section.line(key), fmt::format("{}{} must be a list of two names [x, y]", key, section.where()));
-    return {parameters_.get(section, key, names[0], "m", Rule::any), parameters_.get(section, key, names[1], "m", Rule::any)};
+    if (names.size() != 2)
+      section.reject(section.line(key), fmt::format("{}{} must be a list of two names [x, y]", key, section.where()));
+    return {parameters_.get(section, key, names[0], "m", Rule::any),
+            parameters_.get(section, key, names[1], "m", Rule::any)};
   }
 
   int body(YamlSection& section, const std::string& key) {
@@ -84,13 +89,16 @@ class Builder {
     const int index = find_body(file_.model, name);
     if (index >= 0) return index;
     std::vector<std::string> known{"S"};
-    for (int i = 0; i < file_.model.body_count; ++i) known.emplace_back(file_.model.bodies[static_cast<std::size_t>(i)].name.view());
+    for (int i = 0; i < file_.model.body_count; ++i)
+      known.emplace_back(file_.model.bodies[static_cast<std::size_t>(i)].name.view());
     section.reject(section.line(key), fmt::format("{} = {}{}, must be a body declared above or S, the ground ({})", key,
                                                   printable(name), section.where(), fmt::join(known, ", ")));
   }
   int contact(YamlSection& section, const std::string& key, const std::string& name) {
     const int index = find_contact(file_.model, name);
-    if (index < 0) section.reject(section.line(key), fmt::format("{} = {}{}, must be a contact ({})", key, printable(name), section.where(), contact_names()));
+    if (index < 0)
+      section.reject(section.line(key), fmt::format("{} = {}{}, must be a contact ({})", key, printable(name),
+                                                    section.where(), contact_names()));
     return index;
   }
   std::string contact_names() const {
@@ -100,19 +108,25 @@ class Builder {
     return names;
   }
   void check_name(const YamlSection& section, const std::string& name) const {
-    if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '+' || c == '-'; }))
-      section.reject(section.line(name), fmt::format("name {} must be of letters, digits, _, + and -", printable(name)));
+    if (!std::all_of(name.begin(), name.end(), [](char c) {
+          return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '+' || c == '-';
+        }))
+      section.reject(section.line(name),
+                     fmt::format("name {} must be of letters, digits, _, + and -", printable(name)));
     if (name.size() > Name::kCapacity)
-      section.reject(section.line(name), fmt::format("name {} is too long, must have at most {} letters", printable(name), Name::kCapacity));
+      section.reject(section.line(name), fmt::format("name {} is too long, must have at most {} letters",
+                                                     printable(name), Name::kCapacity));
   }
 
   void read_bodies(YamlSection bodies) {
     if (bodies.keys().empty()) bodies.reject(bodies.line(""), "bodies must name at least one body");
     for (const std::string& name : bodies.keys()) {
       check_name(bodies, name);
-      if (name == "S" || name == "G") bodies.reject(bodies.line(name), fmt::format("body {}: S and G are names of the ground", name));
+      if (name == "S" || name == "G")
+        bodies.reject(bodies.line(name), fmt::format("body {}: S and G are names of the ground", name));
       if (file_.model.body_count == kMaxBodies)
-        bodies.reject(bodies.line(name), fmt::format("body {} is one too many, must be at most {}", printable(name), kMaxBodies));
+        bodies.reject(bodies.line(name),
+                      fmt::format("body {} is one too many, must be at most {}", printable(name), kMaxBodies));
       // a body joins the list only when it is read: a parent must stand above, so that the tree has no loop
       const Body read = read_body(bodies.section(name), name);
       file_.model.bodies[static_cast<std::size_t>(file_.model.body_count++)] = read;
@@ -177,7 +191,9 @@ class Builder {
       const double length = number(section, "length", "m", Rule::positive);
       shape.radius = optional_number(section, "corner_radius", "m", Rule::positive);
       shape.half_length = 0.5 * length - shape.radius;
-      if (shape.half_length <= 0) parameters_.reject(section.word("corner_radius"), fmt::format("must be less than half the length of {} m", length));
+      if (shape.half_length <= 0)
+        parameters_.reject(section.word("corner_radius"),
+                           fmt::format("must be less than half the length of {} m", length));
       shape.centre = zone - shape.radius * Vector2(-std::sin(shape.direction), std::cos(shape.direction));
     }
     section.finish();
@@ -188,7 +204,8 @@ class Builder {
     for (const std::string& name : contacts.keys()) {
       check_name(contacts, name);
       if (file_.model.contact_count == kMaxContacts)
-        contacts.reject(contacts.line(name), fmt::format("contact {} is one too many, must be at most {}", printable(name), kMaxContacts));
+        contacts.reject(contacts.line(name),
+                        fmt::format("contact {} is one too many, must be at most {}", printable(name), kMaxContacts));
       const Contact read = read_contact(contacts.section(name), name);
       file_.model.contacts[static_cast<std::size_t>(file_.model.contact_count++)] = read;
     }
@@ -203,17 +220,22 @@ class Builder {
     contact.shape_a = read_side(section.section("a"), contact.body_a, zone_a);
     contact.shape_b = read_side(section.section("b"), contact.body_b, zone_b);
     if (contact.body_a == contact.body_b)
-      section.reject(section.line("b"), fmt::format("contact {} is between a body and itself, must be between two", name));
+      section.reject(section.line("b"),
+                     fmt::format("contact {} is between a body and itself, must be between two", name));
     if (contact.shape_a.kind == ShapeKind::segment && contact.shape_b.kind == ShapeKind::segment)
-      section.reject(section.line("b"), fmt::format("contact {} is between two segments, one side must be a circle", name));
+      section.reject(section.line("b"),
+                     fmt::format("contact {} is between two segments, one side must be a circle", name));
     contact.friction = optional_number(section, "friction", "-", Rule::not_negative);
     contact.restitution = optional_number(section, "restitution", "-", Rule::zero_to_one);
     if (section.optional("felt")) read_felt(section.section("felt"), contact, zone_a, zone_b);
     if (contact.has_felt && contact.restitution > 0)
-      section.reject(section.line("restitution"), fmt::format("contact {} has a felt and a restitution, may have only one of them", name));
+      section.reject(section.line("restitution"),
+                     fmt::format("contact {} has a felt and a restitution, may have only one of them", name));
     if (contact.friction > 0 && contact.restitution > 0)
-      section.reject(section.line("restitution"), fmt::format("contact {} has a restitution and a friction, may have only one of them: "
-                                                              "together they can create energy", name));
+      section.reject(section.line("restitution"),
+                     fmt::format("contact {} has a restitution and a friction, may have only one of them: "
+                                 "together they can create energy",
+                                 name));
     section.finish();
     return contact;
   }
@@ -241,7 +263,8 @@ class Builder {
     Body& body = file_.model.bodies[static_cast<std::size_t>(holder)];
     const Vector2 moment = body.mass * body.centre - mass * place;
     if (mass >= body.mass || mass * place.squaredNorm() >= body.inertia)
-      parameters_.reject(section.word("mass"), fmt::format("must be lighter than body {} that carries it", body.name.view()));
+      parameters_.reject(section.word("mass"),
+                         fmt::format("must be lighter than body {} that carries it", body.name.view()));
     body.mass -= mass;
     body.centre = moment / body.mass;
     body.inertia -= mass * place.squaredNorm();
@@ -250,9 +273,12 @@ class Builder {
   void read_finger(YamlSection section) {
     Finger& finger = file_.model.finger;
     finger.body = body(section, "body");
-    const bool is_fit = finger.body != kGround && file_.model.bodies[static_cast<std::size_t>(finger.body)].parent == kGround &&
+    const bool is_fit = finger.body != kGround &&
+                        file_.model.bodies[static_cast<std::size_t>(finger.body)].parent == kGround &&
                         file_.model.bodies[static_cast<std::size_t>(finger.body)].joint == JointKind::hinge;
-    if (!is_fit) section.reject(section.line("body"), fmt::format("body = {} in finger, must hang on the ground by a hinge", section.word("body")));
+    if (!is_fit)
+      section.reject(section.line("body"),
+                     fmt::format("body = {} in finger, must hang on the ground by a hinge", section.word("body")));
     finger.arm = number(section, "arm", "m", Rule::positive);
     finger.stiffness = number(section, "stiffness", "N/m", Rule::positive);
     finger.damping = number(section, "damping", "N s/m", Rule::not_negative);
@@ -265,7 +291,8 @@ class Builder {
     for (const std::string& name : section.words("contacts")) {
       Contact& part = file_.model.contacts[static_cast<std::size_t>(contact(section, "contacts", name))];
       if (part.body_a != damper && part.body_b != damper)
-        section.reject(section.line("contacts"), fmt::format("contacts = {} in damper, must be contacts of its body", name));
+        section.reject(section.line("contacts"),
+                       fmt::format("contacts = {} in damper, must be contacts of its body", name));
       part.is_active = options_.damper;
     }
     file_.model.bodies[static_cast<std::size_t>(damper)].is_held = !options_.damper;
@@ -274,16 +301,20 @@ class Builder {
 
   void read_events(YamlSection section) {
     ActionRoles& roles = file_.roles;
-    for (const auto& [key, role] : {std::pair{"let_off", &roles.let_off}, {"escapement", &roles.escapement},
-                                    {"front_rail", &roles.front_rail}, {"string", &roles.string},
-                                    {"backcheck", &roles.backcheck}, {"jack_rest", &roles.jack_rest}})
+    for (const auto& [key, role] : {std::pair{"let_off", &roles.let_off},
+                                    {"escapement", &roles.escapement},
+                                    {"front_rail", &roles.front_rail},
+                                    {"string", &roles.string},
+                                    {"backcheck", &roles.backcheck},
+                                    {"jack_rest", &roles.jack_rest}})
       if (section.optional(key)) *role = contact(section, key, section.word(key));
     if (section.optional("hammer")) roles.hammer = body(section, "hammer");
     if (roles.hammer != kGround && roles.string >= 0) {
       const Contact& string = file_.model.contacts[static_cast<std::size_t>(roles.string)];
       if (string.body_a != roles.hammer && string.body_b != roles.hammer)
-        section.reject(section.line("hammer"), fmt::format("hammer = {} in events, must be a body of the string's contact {}",
-                                                           section.word("hammer"), string.name.view()));
+        section.reject(section.line("hammer"),
+                       fmt::format("hammer = {} in events, must be a body of the string's contact {}",
+                                   section.word("hammer"), string.name.view()));
     }
     section.finish();
   }
@@ -292,7 +323,8 @@ class Builder {
     for (const std::string& name : options_.without) {
       const int index = find_contact(file_.model, name);
       if (index < 0)
-        throw InputError(fmt::format("--without {}: there is no such contact, must be one of {}", printable(name), contact_names()));
+        throw InputError(
+            fmt::format("--without {}: there is no such contact, must be one of {}", printable(name), contact_names()));
       file_.model.contacts[static_cast<std::size_t>(index)].is_active = false;
     }
   }

@@ -32,19 +32,12 @@
 #endif
 
 #include "erard/device/error.hpp"
+#include "printable.hpp"
 
 namespace erard::csv {
 
 inline constexpr long long kMaxBytes = 64LL << 20;  // over two hours at 1 kHz; a pipe without end stops here
 inline constexpr int kMaxLineLength = 4000;         // a row of a trajectory needs 800, a licence line 120
-
-/// Text safe to print inside a one-line message: control characters become '?', long texts are cut.
-inline std::string printable(std::string_view text, std::size_t longest = 40) {
-  std::string safe(text.substr(0, longest));
-  for (char& c : safe)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text.size() > longest ? safe + "..." : safe;
-}
 
 /// Throws InputError "file: complaint".
 [[noreturn]] inline void reject(const std::filesystem::path& file, std::string_view complaint) {
@@ -115,7 +108,8 @@ class Table {
         rule_(std::move(rule)),
         reader_(file_.string(), std::unique_ptr<io::ByteSourceBase>(new CheckedBytes(file_))) {
     const io::ignore_column others_too = io::ignore_missing_column | io::ignore_extra_column;
-    read_header(others == OtherColumns::ignored ? others_too : io::ignore_missing_column, std::make_index_sequence<N>{});
+    read_header(others == OtherColumns::ignored ? others_too : io::ignore_missing_column,
+                std::make_index_sequence<N>{});
   }
 
   bool has(std::size_t column) const { return reader_.has_column(columns_[column]); }

@@ -74,15 +74,16 @@ void check_time(KeystrokeTable& table, const std::vector<double>& times, double 
   if (std::abs(time) > kLatestTime)
     table.reject_row(fmt::format("t_s = {} s, must be within +-{} s (a day)", time, kLatestTime));
   if (!times.empty() && time - times.back() < kShortestInterval)
-    table.reject_row(fmt::format("t_s = {} s after {} s, must rise by {} s or more from row to row", time,
-                                 times.back(), kShortestInterval));
+    table.reject_row(fmt::format("t_s = {} s after {} s, must rise by {} s or more from row to row", time, times.back(),
+                                 kShortestInterval));
 }
 
 void check_position(KeystrokeTable& table, double position) {
   if (std::abs(position) > kLongestTravel)
-    table.reject_row(fmt::format("position_m = {} m, must be within +-{} m; positions are in metres, this looks like "
-                                 "millimetres",
-                                 position, kLongestTravel));
+    table.reject_row(
+        fmt::format("position_m = {} m, must be within +-{} m; positions are in metres, this looks like "
+                    "millimetres",
+                    position, kLongestTravel));
 }
 
 void check_speed(KeystrokeTable& table, double interval, double rise) {
@@ -99,7 +100,8 @@ void check_force(KeystrokeTable& table, double force) {
 
 // One line each: a comment that ran on would be read as a row.
 std::string comment_line(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   return text.empty() ? "#\n" : "# " + text + "\n";
 }
 
@@ -110,8 +112,7 @@ Keystroke::Keystroke(KeystrokeQuantity quantity, std::vector<double> times, std:
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (times_.size() != values_.size() || times_.size() < 2)
     throw std::invalid_argument("a keystroke needs two samples or more, and a value for each time");
-  if (!std::all_of(times_.begin(), times_.end(), is_finite) ||
-      !std::all_of(values_.begin(), values_.end(), is_finite))
+  if (!std::all_of(times_.begin(), times_.end(), is_finite) || !std::all_of(values_.begin(), values_.end(), is_finite))
     throw std::invalid_argument("the samples of a keystroke must be finite");
   if (std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) != times_.end())
     throw std::invalid_argument("the times of a keystroke must rise");

@@ -27,7 +27,10 @@ void prepare_output_folder(const std::filesystem::path& folder) {
   std::error_code also;
   if (!std::filesystem::is_directory(folder, also))
     throw InputError(fmt::format("{}: cannot be used as output folder ({}); name a folder that can be written",
-                                 folder.string(), error ? error.message() : also ? also.message() : "it is not a folder"));
+                                 folder.string(),
+                                 error  ? error.message()
+                                 : also ? also.message()
+                                        : "it is not a folder"));
   OutputFile probe(folder / "probe");  // not committed: leaves nothing
 }
 

@@ -24,8 +24,8 @@ class Parameters {
     for (const Setting& setting : settings) {
       const auto at = place_.find(setting.name);
       if (at == place_.end())
-        throw InputError(fmt::format("--set {}={}: {} has no parameter of this name{}", printable(setting.name), setting.value,
-                                     file_, suggest(setting.name, names)));
+        throw InputError(fmt::format("--set {}={}: {} has no parameter of this name{}", printable(setting.name),
+                                     setting.value, file_, suggest(setting.name, names)));
       if (!std::isfinite(setting.value))
         throw InputError(fmt::format("--set {}={}: must be a finite number", setting.name, setting.value));
       list_[at->second].value = setting.value;
@@ -35,14 +35,16 @@ class Parameters {
   }
 
   /// The number that a key of the mechanism names, in the unit and within the rule that the key asks for.
-  double get(const YamlSection& section, const std::string& key, const std::string& name, std::string_view unit, Rule rule) {
+  double get(const YamlSection& section, const std::string& key, const std::string& name, std::string_view unit,
+             Rule rule) {
     const auto at = place_.find(name);
     if (at == place_.end())
-      section.reject(section.line(key), fmt::format("{} = {}{}, must name a parameter{}", key, printable(name), section.where(),
-                                                    suggest(name, section_names())));
+      section.reject(section.line(key), fmt::format("{} = {}{}, must name a parameter{}", key, printable(name),
+                                                    section.where(), suggest(name, section_names())));
     const Parameter& p = list_[at->second];
     is_used_[at->second] = true;
-    if (p.unit != unit) reject(p, fmt::format("has the unit {}, must have {} to be the {}{}", p.unit, unit, key, section.where()));
+    if (p.unit != unit)
+      reject(p, fmt::format("has the unit {}, must have {} to be the {}{}", p.unit, unit, key, section.where()));
     check(p, rule);
     return p.value;
   }
@@ -58,7 +60,9 @@ class Parameters {
     if (p.line == 0) throw InputError(fmt::format("--set {}={}: {}", p.name, p.value, rule));
     throw InputError(fmt::format("{}:{}: {} = {} {}, {}", file_, p.line, p.name, p.value, p.unit, rule));
   }
-  [[noreturn]] void reject(const std::string& name, std::string_view rule) const { reject(list_[place_.at(name)], rule); }
+  [[noreturn]] void reject(const std::string& name, std::string_view rule) const {
+    reject(list_[place_.at(name)], rule);
+  }
 
   const std::vector<Parameter>& list() const { return list_; }
 

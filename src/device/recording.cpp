@@ -263,8 +263,8 @@ void check_row(RecordingTable& table, const Recording& recording, double time, d
 
 void check_range(const char* option, double value, double low, double high, double unit, const char* unit_name) {
   if (!(value >= low && value <= high))
-    throw InputError(fmt::format("{} = {:.6g} {}, must be within {:.6g} and {:.6g} {}", option, value / unit,
-                                 unit_name, low / unit, high / unit, unit_name));
+    throw InputError(fmt::format("{} = {:.6g} {}, must be within {:.6g} and {:.6g} {}", option, value / unit, unit_name,
+                                 low / unit, high / unit, unit_name));
 }
 
 void check_settings(const ImportSettings& settings, double rate) {
@@ -318,8 +318,7 @@ ImportFigures measure(const Recording& recording, const ImportSettings& settings
   for (std::size_t i = 0; i < z.size(); ++i) {
     if (is_clipped(readings[i], settings)) ++figures.clipped_count;
     if (is_rest[i]) ++figures.rest_count;
-    if (i > 0 && is_rest[i - 1] && !is_rest[i] && ++figures.movement_count == 1)
-      figures.onset = recording.times[i - 1];
+    if (i > 0 && is_rest[i - 1] && !is_rest[i] && ++figures.movement_count == 1) figures.onset = recording.times[i - 1];
     figures.deepest_press = std::max(figures.deepest_press, z[i] - settings.full_scale);
     figures.peak_rate =
         std::max(figures.peak_rate, keystroke.at(recording.times[i]).rate * settings.full_scale / settings.dip);
@@ -390,9 +389,10 @@ std::vector<std::string> describe_import(const ImportSettings& settings, const I
   constexpr double mm = kMillimetre;
   return {
       "command: " + command,
-      fmt::format("conversion: position_m = smoothed key_front_mm x {:.6g} m / {:.6g} mm on the times of the recording; "
-                  "at rest exactly 0",
-                  settings.dip, settings.full_scale / mm),
+      fmt::format(
+          "conversion: position_m = smoothed key_front_mm x {:.6g} m / {:.6g} mm on the times of the recording; "
+          "at rest exactly 0",
+          settings.dip, settings.full_scale / mm),
       fmt::format("settings: rest {:.4g} mm, cutoff {:.4g} Hz rising with the speed to {:.4g} Hz at {:.4g} m/s, press "
                   "{:.4g} mm",
                   settings.rest / mm, settings.slow_cutoff, settings.fast_cutoff, settings.fast_speed,
@@ -400,13 +400,15 @@ std::vector<std::string> describe_import(const ImportSettings& settings, const I
       fmt::format("samples: {}, of them {} at rest and {} clipped, in {} movements, the first from {:.4f} s",
                   figures.sample_count, figures.rest_count, figures.clipped_count, figures.movement_count,
                   figures.onset),
-      fmt::format("in the recording's scale: rms change {:.4f} mm below {:.3f} mm and {:.4f} mm above, pressed {:.3f} mm "
-                  "beyond the clip",
-                  figures.residual_low / mm, settings.full_scale / 3 / mm, figures.residual_high / mm,
-                  figures.deepest_press / mm),
-      fmt::format("in the recording's scale: peak speed over 9 samples {:.3f} m/s, recorded {:.3f} m/s; peak rate {:.3f} "
-                  "m/s",
-                  figures.kept_speed, figures.recorded_speed, figures.peak_rate),
+      fmt::format(
+          "in the recording's scale: rms change {:.4f} mm below {:.3f} mm and {:.4f} mm above, pressed {:.3f} mm "
+          "beyond the clip",
+          figures.residual_low / mm, settings.full_scale / 3 / mm, figures.residual_high / mm,
+          figures.deepest_press / mm),
+      fmt::format(
+          "in the recording's scale: peak speed over 9 samples {:.3f} m/s, recorded {:.3f} m/s; peak rate {:.3f} "
+          "m/s",
+          figures.kept_speed, figures.recorded_speed, figures.peak_rate),
   };
 }
 

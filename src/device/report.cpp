@@ -144,7 +144,9 @@ OtherRun read_other_run(const Path& path) {
   return other;
 }
 
-void write_report(OutputFile& file, const Report& report) { file.write(fill_page(run_json(report), other_json(report))); }
+void write_report(OutputFile& file, const Report& report) {
+  file.write(fill_page(run_json(report), other_json(report)));
+}
 
 std::vector<Path> write_poses(const Path& folder, const std::vector<std::string>& words, const Report& report) {
   std::vector<Path> files;

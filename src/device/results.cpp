@@ -25,7 +25,9 @@ void emit_summary(YAML::Emitter& out, const RunSummary& s) {
   out << YAML::Key << "simulated_s" << YAML::Value << simulated;
   out << YAML::Key << "complete" << YAML::Value << (r.is_complete && r.is_finite);
   out << YAML::Key << "stopped_by" << YAML::Value
-      << (!r.is_finite ? "a step that was not finite" : r.is_complete ? "end of the run" : "interrupt");
+      << (!r.is_finite    ? "a step that was not finite"
+          : r.is_complete ? "end of the run"
+                          : "interrupt");
   out << YAML::Key << "force_peak_N" << YAML::Value << r.peak_force;
   out << YAML::Key << "force_peak_time_s" << YAML::Value << r.peak_force_time;
   out << YAML::Key << "periods" << YAML::Value << r.periods;
@@ -167,16 +169,20 @@ std::string describe(const RunSummary& s) {
   if (s.comparison)
     fmt::format_to(out, "error        eta {:.2f} % of the force in {}, {:.3f} to {:.3f} s (thesis 6.3)\n",
                    100 * s.comparison->eta, s.comparison->file, s.comparison->from, s.comparison->until);
-  fmt::format_to(out, "speed        {:.0f} times faster than real time; a period of {:.0f} us takes {:.1f} us (median; 99 % {:.1f}, worst {:.0f}), "
+  fmt::format_to(out,
+                 "speed        {:.0f} times faster than real time; a period of {:.0f} us takes {:.1f} us (median; 99 % "
+                 "{:.1f}, worst {:.0f}), "
                  "a step {:.1f} us\n",
                  simulated / std::max(r.computing_time, 1e-9), 1e6 * s.tick.period, 1e6 * r.tick_time.quantile(0.5),
-                 1e6 * r.tick_time.quantile(0.99), 1e6 * r.tick_time.worst(), 1e6 * r.tick_time.quantile(0.5) / s.tick.substeps);
-  fmt::format_to(out, "solver       {} steps of {:.0f} us ({} a period): {:.1f} linearisations, {:.1f} sweeps each", r.steps,
-                 1e6 * s.tick.scheme.time_step, s.tick.substeps, static_cast<double>(r.linearisations) / steps,
+                 1e6 * r.tick_time.quantile(0.99), 1e6 * r.tick_time.worst(),
+                 1e6 * r.tick_time.quantile(0.5) / s.tick.substeps);
+  fmt::format_to(out, "solver       {} steps of {:.0f} us ({} a period): {:.1f} linearisations, {:.1f} sweeps each",
+                 r.steps, 1e6 * s.tick.scheme.time_step, s.tick.substeps, static_cast<double>(r.linearisations) / steps,
                  static_cast<double>(r.sweeps) / steps);
   fmt::format_to(out, ", {} not converged\n", r.not_converged);
   if (s.tick.scheme.time_step > kLongestGoodStep)
-    fmt::format_to(out, "NOTE         steps beyond {:.0f} us miss impacts on felts; --substeps makes them shorter\n", 1e6 * kLongestGoodStep);
+    fmt::format_to(out, "NOTE         steps beyond {:.0f} us miss impacts on felts; --substeps makes them shorter\n",
+                   1e6 * kLongestGoodStep);
   if (!r.is_finite) fmt::format_to(out, "STOPPED      a number was not finite after {:.6f} s\n", simulated);
   if (!r.is_complete) fmt::format_to(out, "INTERRUPTED  after {:.3f} s; what is complete was kept\n", simulated);
   return text;

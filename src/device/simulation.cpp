@@ -85,8 +85,7 @@ RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSet
 
   const auto show = [&](double force) {
     if (settings.on_row)
-      settings.on_row(
-          take_snapshot(mechanism, state, tick_settings.scheme.time_step, input.at(state.time), force));
+      settings.on_row(take_snapshot(mechanism, state, tick_settings.scheme.time_step, input.at(state.time), force));
   };
   const auto observe = [&](const State& now, const StepReport& report, double force) noexcept {
     detector.observe(now, force);

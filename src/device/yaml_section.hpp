@@ -11,16 +11,9 @@
 #include <vector>
 
 #include "erard/device/error.hpp"
+#include "printable.hpp"
 
 namespace erard {
-
-/// Text safe to print inside a one-line message.
-inline std::string printable(std::string_view text) {
-  std::string safe(text.substr(0, 60));
-  for (char& c : safe)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text.size() > 60 ? safe + "..." : safe;
-}
 
 /// Letters to change, add or drop to make one word of the other (Levenshtein).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -61,9 +54,11 @@ class YamlSection {
     if (!node.IsMap()) reject(line, fmt::format("must be a mapping of keys to values{}", where()));
     for (const auto& entry : node) {
       const std::string key = entry.first.Scalar();
-      if (!entry.first.IsScalar() || key.empty()) reject(line_of(entry.first), fmt::format("a key must be a word{}", where()));
+      if (!entry.first.IsScalar() || key.empty())
+        reject(line_of(entry.first), fmt::format("a key must be a word{}", where()));
       if (std::find(keys_.begin(), keys_.end(), key) != keys_.end())
-        reject(line_of(entry.first), fmt::format("{} stands twice{}, each key may stand once", printable(key), where()));
+        reject(line_of(entry.first),
+               fmt::format("{} stands twice{}, each key may stand once", printable(key), where()));
       keys_.push_back(key);
       lines_.push_back(line_of(entry.first));
     }
@@ -89,14 +84,16 @@ class YamlSection {
 
   std::string word(const std::string& key) {
     const YAML::Node node = required(key);
-    if (!node.IsScalar() || node.Scalar().empty()) reject(line(key), fmt::format("{}{} must be a single word", key, where()));
+    if (!node.IsScalar() || node.Scalar().empty())
+      reject(line(key), fmt::format("{}{} must be a single word", key, where()));
     return node.Scalar();
   }
   /// One of the allowed words.
   std::string choice(const std::string& key, const std::vector<std::string>& allowed) {
     const std::string value = word(key);
     if (std::find(allowed.begin(), allowed.end(), value) == allowed.end())
-      reject(line(key), fmt::format("{} = {}{}, must be one of {}", key, printable(value), where(), fmt::join(allowed, ", ")));
+      reject(line(key),
+             fmt::format("{} = {}{}, must be one of {}", key, printable(value), where(), fmt::join(allowed, ", ")));
     return value;
   }
   std::vector<std::string> words(const std::string& key) {

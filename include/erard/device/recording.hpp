@@ -21,11 +21,11 @@ struct Recording {
 struct ImportSettings {
   double dip = 0.0098;           // [m] in the model: where the key meets the front rail, hence what full_scale becomes
   double full_scale = 0.011906;  // [m] reading at which the sensor clips: key-bed contact
-  double rest = 0.0005;          // [m] a movement reaches beyond this; a reading below says no more than "less than this"
-  double slow_cutoff = 15;       // [Hz] of the smoothing where the key is slow; applies at the noise of rest
-  double fast_cutoff = 350;      // [Hz] where it is fast
-  double fast_speed = 0.25;      // [m/s] what counts as fast; the cutoff is proportional to the speed below it
-  double press = 0.0002;         // [m] how far a finger is expected to press beyond full_scale
+  double rest = 0.0005;      // [m] a movement reaches beyond this; a reading below says no more than "less than this"
+  double slow_cutoff = 15;   // [Hz] of the smoothing where the key is slow; applies at the noise of rest
+  double fast_cutoff = 350;  // [Hz] where it is fast
+  double fast_speed = 0.25;  // [m/s] what counts as fast; the cutoff is proportional to the speed below it
+  double press = 0.0002;     // [m] how far a finger is expected to press beyond full_scale
 };
 
 /// What a conversion did. Speeds and lengths in the scale of the recording.
@@ -57,8 +57,7 @@ Recording read_recording(const std::filesystem::path& file);
 /// @param file  name of the recording, for complaints
 /// Throws InputError when the settings are impossible, when the recording does not start at rest or never moves, or
 /// when it goes beyond full_scale.
-Import import_recording(const Recording& recording, const ImportSettings& settings,
-                        const std::filesystem::path& file);
+Import import_recording(const Recording& recording, const ImportSettings& settings, const std::filesystem::path& file);
 
 /// Peak downward speed [m/s] of uniform samples: slope of the cubic through nine neighbours (Savitzky and Golay), which
 /// passes a strike and damps the noise of single samples.

@@ -38,9 +38,9 @@ class ProblemFile {
 
 struct Comparison {
   std::string file;
-  double from = 0;   // window [s]
+  double from = 0;  // window [s]
   double until = 0;
-  double eta = 0;    // [-]
+  double eta = 0;  // [-]
 };
 
 /// What summary.yaml and the terminal tell.

@@ -12,35 +12,35 @@ namespace erard {
 
 /// Which contacts and bodies of a mechanism play the parts that events speak of; -1 where it has none.
 struct ActionRoles {
-  int let_off = -1;      // contact jack - let-off button (JG)
-  int escapement = -1;   // contact jack top - knuckle (JH)
-  int front_rail = -1;   // contact key - front rail punching (KS+)
-  int string = -1;       // contact hammer - string (HG)
-  int backcheck = -1;    // contact backcheck - hammer tail (KH)
-  int jack_rest = -1;    // contact jack - its regulating screw (WJ)
-  int hammer = -1;       // body
+  int let_off = -1;     // contact jack - let-off button (JG)
+  int escapement = -1;  // contact jack top - knuckle (JH)
+  int front_rail = -1;  // contact key - front rail punching (KS+)
+  int string = -1;      // contact hammer - string (HG)
+  int backcheck = -1;   // contact backcheck - hammer tail (KH)
+  int jack_rest = -1;   // contact jack - its regulating screw (WJ)
+  int hammer = -1;      // body
 };
 
 enum class EventKind {
-  jack_meets_let_off,   // first force at the let-off button                                thesis 6.4.1 (b)
-  escapement,           // jack top leaves the knuckle for the last time before the string is hit
-  key_meets_front_rail, // first force at the front rail punching                           thesis (c)
-  hammer_meets_string,  // force at the string appears, 10 ms lock-out                      thesis (d)
-  hammer_checked,       // first force at the backcheck after an impact                     thesis (e)
-  jack_returned,        // the jack lies on its screw again and is free of the button       thesis (f)
-  repetition_ready,     // the jack's top is under the knuckle again: the knuckle's centre, seen across the top,
-                        // lies between the two corners
+  jack_meets_let_off,    // first force at the let-off button                                thesis 6.4.1 (b)
+  escapement,            // jack top leaves the knuckle for the last time before the string is hit
+  key_meets_front_rail,  // first force at the front rail punching                           thesis (c)
+  hammer_meets_string,   // force at the string appears, 10 ms lock-out                      thesis (d)
+  hammer_checked,        // first force at the backcheck after an impact                     thesis (e)
+  jack_returned,         // the jack lies on its screw again and is free of the button       thesis (f)
+  repetition_ready,      // the jack's top is under the knuckle again: the knuckle's centre, seen across the top,
+                         // lies between the two corners
 };
 
 inline constexpr const char* name_of(EventKind kind) noexcept {
-  constexpr std::array names{"jack_meets_let_off",  "escapement",     "key_meets_front_rail", "hammer_meets_string",
-                             "hammer_checked",      "jack_returned",  "repetition_ready"};
+  constexpr std::array names{"jack_meets_let_off", "escapement",    "key_meets_front_rail", "hammer_meets_string",
+                             "hammer_checked",     "jack_returned", "repetition_ready"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 struct Event {
   EventKind kind = EventKind::jack_meets_let_off;
-  double time = 0;          // end of the step that saw it [s]
+  double time = 0;  // end of the step that saw it [s]
   int strike = 1;
   double hammer_speed = 0;  // |omega_H| times the radius of the head circle's centre, of the step before [m/s]
   double key_position = 0;  // y [m]
@@ -58,17 +58,20 @@ class EventDetector {
       const Contact& string = mechanism.model.contacts[roles.string];
       hammer_radius_ = (string.body_a == roles.hammer ? string.shape_a : string.shape_b).centre.norm();
     }
-    for (int c = 0; c < mechanism.contact_count(); ++c)
-      normal_row_[c] = find_row(mechanism.rows, RowKind::normal, c);
+    for (int c = 0; c < mechanism.contact_count(); ++c) normal_row_[c] = find_row(mechanism.rows, RowKind::normal, c);
   }
 
   /// Looks at the state after one internal step. @param force of the finger [N]
   void observe(const State& state, double force) noexcept {
-    const Sight now{touches(state, roles_.let_off), touches(state, roles_.escapement),
+    const Sight now{touches(state, roles_.let_off),    touches(state, roles_.escapement),
                     touches(state, roles_.front_rail), touches(state, roles_.string),
-                    touches(state, roles_.backcheck), touches(state, roles_.jack_rest)};
-    const Event here{EventKind::escapement, state.time, strike_, hammer_speed_,
-                     mechanism_->model.finger.body == kGround ? 0.0 : key_position(mechanism_->model, state), force};
+                    touches(state, roles_.backcheck),  touches(state, roles_.jack_rest)};
+    const Event here{EventKind::escapement,
+                     state.time,
+                     strike_,
+                     hammer_speed_,
+                     mechanism_->model.finger.body == kGround ? 0.0 : key_position(mechanism_->model, state),
+                     force};
     see_descent(now, here);
     see_string(now, here);
     see_return(now, here, is_jack_under_knuckle(state));
@@ -89,8 +92,8 @@ class EventDetector {
     bool let_off = false, escapement = false, front_rail = false, string = false, backcheck = false, jack_rest = false;
   };
 
-  static constexpr double kLockOut = 0.010;        // [s] between two impacts, design.md: shorter ones are one blow
-  static constexpr double kReturnDelay = 0.005;    // [s] after an impact before the jack counts as returned
+  static constexpr double kLockOut = 0.010;      // [s] between two impacts, design.md: shorter ones are one blow
+  static constexpr double kReturnDelay = 0.005;  // [s] after an impact before the jack counts as returned
 
   bool touches(const State& state, int contact) const noexcept {
     return contact >= 0 && normal_row_[contact] >= 0 && state.impulse[normal_row_[contact]] > 0;
@@ -210,11 +213,11 @@ class EventDetector {
   int count_ = 0;
   int strike_ = 1;
   Sight before_;
-  double hammer_speed_ = 0;     // at the last step [m/s]
+  double hammer_speed_ = 0;                                        // at the last step [m/s]
   double last_impact_ = -std::numeric_limits<double>::infinity();  // [s]
-  Event escapement_;            // the last candidate
+  Event escapement_;                                               // the last candidate
   bool has_let_off_ = false, has_rail_ = false, has_impact_ = false, has_escaped_ = false;
-  Event next_escapement_;       // a candidate that came after the jack had returned
+  Event next_escapement_;  // a candidate that came after the jack had returned
   bool is_escape_settled_ = false, has_next_escapement_ = false;
   bool is_check_due_ = false, is_return_due_ = false, is_ready_due_ = false;
   bool has_left_rest_ = false, was_aside_ = false, is_rearmed_ = false;

@@ -26,7 +26,7 @@ struct TickSettings {
 };
 
 struct TickReport {
-  double force = 0;             // of the finger at the end of the period [N]
+  double force = 0;                           // of the finger at the end of the period [N]
   StepStatus status = StepStatus::converged;  // the worst of its steps
   int linearisations = 0;
   int sweeps = 0;

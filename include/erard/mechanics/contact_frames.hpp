@@ -9,9 +9,9 @@ using BodyVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMa
 
 /// One contact in the ground frame.
 struct ContactFrame {
-  double gap = 0;                      // compression of the felt included: 0 when the felt touches [m]
-  Vector2 normal = Vector2::UnitY();   // from A to B
-  Vector2 point = Vector2::Zero();     // where the tangential force acts: on the side without felt
+  double gap = 0;                        // compression of the felt included: 0 when the felt touches [m]
+  Vector2 normal = Vector2::UnitY();     // from A to B
+  Vector2 point = Vector2::Zero();       // where the tangential force acts: on the side without felt
   Vector2 felt_point = Vector2::Zero();  // where the mass of the felt is, uncompressed
   Vector2 felt_slide = Vector2::Zero();  // velocity of the felt per unit rate of compression: into the carrier
   double felt_lever = 1;                 // d gap / d compression [-]

@@ -26,10 +26,10 @@ inline PlacedShape place_shape(const Shape& shape, const Frame& frame, const Vec
 
 /// Smallest distance between two primitives.
 struct Separation {
-  double gap = 0;                      // < 0 when they overlap [m]
-  Vector2 normal = Vector2::UnitY();   // from A to B
-  Vector2 point_a = Vector2::Zero();   // on the surface of A
-  Vector2 point_b = Vector2::Zero();   // on the surface of B
+  double gap = 0;                     // < 0 when they overlap [m]
+  Vector2 normal = Vector2::UnitY();  // from A to B
+  Vector2 point_a = Vector2::Zero();  // on the surface of A
+  Vector2 point_b = Vector2::Zero();  // on the surface of B
 };
 
 /// Point of the core (the centre of a circle, the straight line of a segment) nearest to a point.

@@ -7,9 +7,9 @@ namespace erard {
 
 /// Mass, first moment and moment of inertia of a body with all that hangs on it, about its own joint, in ground axes.
 struct Inertia {
-  double mass = 0;                    // [kg]
-  Vector2 moment = Vector2::Zero();   // mass times position of the centre of gravity [kg m]
-  double inertia = 0;                 // [kg m^2]
+  double mass = 0;                   // [kg]
+  Vector2 moment = Vector2::Zero();  // mass times position of the centre of gravity [kg m]
+  double inertia = 0;                // [kg m^2]
 };
 
 /// Mass matrix M(x) of the kinetic energy T = v.M v / 2                            thesis (4.17), Appendix B

@@ -36,7 +36,8 @@ inline Energy measure_energy(const Mechanism& mechanism, const State& state) noe
   for (int c = 0; c < model.contact_count; ++c) {
     const int felt = mechanism.felt_coordinate[c];
     if (felt < 0) continue;
-    energy.weight -= model.contacts[c].felt.mass * model.gravity.dot(contacts[c].felt_point + state.x[felt] * contacts[c].felt_slide);
+    energy.weight -= model.contacts[c].felt.mass *
+                     model.gravity.dot(contacts[c].felt_point + state.x[felt] * contacts[c].felt_slide);
     energy.felts += felt_energy(model.contacts[c].felt, state.x[felt]);
   }
   return energy;

@@ -18,10 +18,10 @@ inline Vector2 unit_vector(double angle) noexcept { return {std::cos(angle), std
 
 /// Frame of one body in the ground frame.
 struct Frame {
-  Vector2 origin = Vector2::Zero();    // joint B_O [m]
-  double angle = 0;                    // absolute, counterclockwise [rad]
-  Vector2 x_axis = Vector2::UnitX();   // unit vector at `angle`
-  Vector2 slide = Vector2::Zero();     // axis of a prismatic joint; unused on a hinge
+  Vector2 origin = Vector2::Zero();   // joint B_O [m]
+  double angle = 0;                   // absolute, counterclockwise [rad]
+  Vector2 x_axis = Vector2::UnitX();  // unit vector at `angle`
+  Vector2 slide = Vector2::Zero();    // axis of a prismatic joint; unused on a hinge
 
   Vector2 turned(const Vector2& local) const noexcept { return local.x() * x_axis + local.y() * perp(x_axis); }
   Vector2 placed(const Vector2& local) const noexcept { return origin + turned(local); }

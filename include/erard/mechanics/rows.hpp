@@ -18,9 +18,9 @@ enum class RowKind {
 /// One law. Its velocity is measured in m/s, on hinges in rad/s; its impulse in N s, on hinges in N m s.
 struct Row {
   RowKind kind = RowKind::normal;
-  int index = 0;      // contact (normal, stop, tangential) or coordinate (finger, hinge)
-  int normal = -1;    // tangential: row of the normal impulse that bounds it
-  double bound = 0;   // tangential: mu [-]; hinge: c_d [N m] or [N]
+  int index = 0;     // contact (normal, stop, tangential) or coordinate (finger, hinge)
+  int normal = -1;   // tangential: row of the normal impulse that bounds it
+  double bound = 0;  // tangential: mu [-]; hinge: c_d [N m] or [N]
 };
 
 struct RowTable {

@@ -30,10 +30,10 @@ enum class FeltAxis {
 /// A felt: a light body on a slide of the body that carries it, with one coordinate, its compression d >= 0.
 ///   F = k d^r + b d^2 d'                                                        thesis (4.4), 5.4.2
 struct Felt {
-  double stiffness = 0;  // k [N/m^r]
-  double exponent = 1;   // r >= 1 [-]
-  double damping = 0;    // b [N s/m^3]
-  double mass = 0;       // of the part that moves [kg]; belongs to the carrier's total
+  double stiffness = 0;             // k [N/m^r]
+  double exponent = 1;              // r >= 1 [-]
+  double damping = 0;               // b [N s/m^3]
+  double mass = 0;                  // of the part that moves [kg]; belongs to the carrier's total
   Vector2 place = Vector2::Zero();  // of that mass, in the carrier's frame: the zone where the felt is touched [m]
   bool is_carried_by_a = true;
   FeltAxis axis = FeltAxis::contact_normal;

@@ -127,15 +127,15 @@ inline bool may_act(const Mechanism& mechanism, const Scheme& scheme, const Driv
 }
 
 /// Chooses the rows in play and sets their directions H. A row once in play stays for the rest of the step.
-inline void choose_rows(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
-                        const State& state, Workspace& work) noexcept {
+inline void choose_rows(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, const State& state,
+                        Workspace& work) noexcept {
   work.row_count = 0;
   for (int k = 0; k < mechanism.rows.count; ++k) {
     const Row& row = mechanism.rows.row[k];
     set_direction(mechanism, work, row, work.all_directions.col(k));
     if (!work.is_in_play[k])
-      work.is_in_play[k] = may_act(mechanism, scheme, drive, state, work, row, k,
-                                   std::as_const(work.all_directions).col(k));
+      work.is_in_play[k] =
+          may_act(mechanism, scheme, drive, state, work, row, k, std::as_const(work.all_directions).col(k));
     if (!work.is_in_play[k]) continue;
     work.place[k] = work.row_count;
     work.row[work.row_count++] = k;
@@ -159,8 +159,8 @@ inline void idle_fixed_rows(OneStepProblem& problem) noexcept {
 
 /// W = G^T A^-1 H, q and the cones of the rows in play. G = H, but felts enter a position with weight 1 where bodies
 /// have theta, and the rows are scaled by 1 / theta: G_felt = H_felt / theta.
-inline void assemble_problem(const Mechanism& mechanism, const Scheme& scheme,
-                             const Drive& drive, const State& state, Workspace& work) noexcept {
+inline void assemble_problem(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, const State& state,
+                             Workspace& work) noexcept {
   const int n = mechanism.coordinate_count;
   const int m = work.row_count;
   OneStepProblem& problem = work.problem;

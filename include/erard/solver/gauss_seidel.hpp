@@ -35,7 +35,8 @@ inline SweepReport sweep_gauss_seidel(const OneStepProblem& problem, const Schem
       r[i] = impulse;
     }
     report.error = worst_ratio(change, scale);
-    if (report.error > scheme.sweep_tolerance && report.sweeps % kResidualEvery == 0) report.error = residual(problem, r);
+    if (report.error > scheme.sweep_tolerance && report.sweeps % kResidualEvery == 0)
+      report.error = residual(problem, r);
     report.is_converged = report.error <= scheme.sweep_tolerance;
   }
   return report;

@@ -20,8 +20,8 @@ enum class ConeKind {
 
 struct Cone {
   ConeKind kind = ConeKind::half_line;
-  int normal = -1;        // friction: row of its normal impulse
-  double bound = 0;       // friction: mu [-]; interval: largest impulse [N s] or [N m s]
+  int normal = -1;          // friction: row of its normal impulse
+  double bound = 0;         // friction: mu [-]; interval: largest impulse [N s] or [N m s]
   bool is_angular = false;  // unit of the row: rad/s and N m s instead of m/s and N s
 };
 

@@ -5,12 +5,12 @@ namespace erard {
 
 /// theta scheme with contacts at the end of the step (gamma = 1)                  thesis (5.37)-(5.39)
 struct Scheme {
-  double time_step = 1.25e-4;       // h of one internal step [s]
-  double theta = 0.5;               // weight of the end of the step, 0.5 (second order) to 1 (Euler) [-]
-  int newton_limit = 12;            // linearisations a step, at most
-  double newton_tolerance = 1e-4;   // change of the end velocity in the energy norm, relative [-]
-  int sweep_limit = 200;            // Gauss-Seidel sweeps a linearisation, at most
-  double sweep_tolerance = 1e-6;    // change of a row in one sweep, relative to the free velocities of its unit [-]
+  double time_step = 1.25e-4;      // h of one internal step [s]
+  double theta = 0.5;              // weight of the end of the step, 0.5 (second order) to 1 (Euler) [-]
+  int newton_limit = 12;           // linearisations a step, at most
+  double newton_tolerance = 1e-4;  // change of the end velocity in the energy norm, relative [-]
+  int sweep_limit = 200;           // Gauss-Seidel sweeps a linearisation, at most
+  double sweep_tolerance = 1e-6;   // change of a row in one sweep, relative to the free velocities of its unit [-]
 };
 
 }  // namespace erard

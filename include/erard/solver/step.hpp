@@ -16,15 +16,14 @@ enum class StepStatus {
 struct StepReport {
   StepStatus status = StepStatus::converged;
   int linearisations = 0;
-  int sweeps = 0;             // of all linearisations
-  double newton_change = 0;   // of the last linearisation, relative, energy norm [-]
-  double sweep_error = 0;     // of the last sweeps: change or residual, relative [-]
-  double finger_force = 0;    // mean over the step, positive when the finger presses [N]
+  int sweeps = 0;            // of all linearisations
+  double newton_change = 0;  // of the last linearisation, relative, energy norm [-]
+  double sweep_error = 0;    // of the last sweeps: change or residual, relative [-]
+  double finger_force = 0;   // mean over the step, positive when the finger presses [N]
 };
 
 /// First guess: the velocities of the start; prescribed and clamped coordinates as they will be.
-inline void predict(const Mechanism& mechanism, const Drive& drive, const State& state,
-                    Workspace& work) noexcept {
+inline void predict(const Mechanism& mechanism, const Drive& drive, const State& state, Workspace& work) noexcept {
   const Model& model = mechanism.model;
   work.is_fixed.fill(false);
   for (int i = 0; i < model.body_count; ++i) work.is_fixed[i] = model.bodies[i].is_held;
@@ -53,8 +52,8 @@ inline SweepReport solve_rows(const Scheme& scheme, Workspace& work) noexcept {
 }
 
 /// Puts rows in play whose contact or stop the new velocity would violate. @return whether there was one
-inline bool find_violations(const Mechanism& mechanism, const Scheme& scheme,
-                            const State& state, Workspace& work) noexcept {
+inline bool find_violations(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                            Workspace& work) noexcept {
   bool found = false;
   for (int k = 0; k < mechanism.rows.count; ++k) {
     const Row& row = mechanism.rows.row[k];
@@ -86,8 +85,8 @@ inline double update_velocity(const Mechanism& mechanism, const Scheme& scheme, 
 }
 
 /// Projects the penetration of contacts without felt away: smallest displacement in the metric of A.
-inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme,
-                             const State& state, Workspace& work, CoordinateVector& end) noexcept {
+inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme, const State& state, Workspace& work,
+                             CoordinateVector& end) noexcept {
   constexpr int kProjectionSweeps = 20;  // bounded: what is left is taken up by the next step
   auto& shift = work.scratch;
   shift.setZero();
@@ -118,8 +117,7 @@ inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, con
   if (drive.kind == DriveKind::force) return (1 - scheme.theta) * drive.from.value + scheme.theta * drive.to.value;
   if (drive.kind == DriveKind::key) {
     double lacking = work.smooth_residual[finger.body];
-    for (int i = 0; i < work.row_count; ++i)
-      lacking -= work.all_directions(finger.body, work.row[i]) * work.impulse[i];
+    for (int i = 0; i < work.row_count; ++i) lacking -= work.all_directions(finger.body, work.row[i]) * work.impulse[i];
     const double dry = mechanism.model.bodies[finger.body].dry * h;
     const double rate = work.end_velocity[finger.body];
     lacking += rate > 0 ? dry : rate < 0 ? -dry : -std::clamp(lacking, -dry, dry);
@@ -131,8 +129,8 @@ inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, con
 }
 
 /// Takes the iterate over as the state at the end of the step, unless a number is not finite.
-inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
-                   State& state, Workspace& work, StepReport& report) noexcept {
+inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, State& state, Workspace& work,
+                   StepReport& report) noexcept {
   const Finger& finger = mechanism.model.finger;
   auto& end = work.end_position;
   end.resize(mechanism.coordinate_count);
@@ -158,8 +156,8 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
 /// problem inside. Bounded: newton_limit x sweep_limit sweeps.
 /// @param state in: start, out: end of the step; left alone when the report says not_finite
 /// No heap, no exceptions; nothing in `work` is read before it is written.
-inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
-                       State& state, Workspace& work) noexcept {
+inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, State& state,
+                       Workspace& work) noexcept {
   StepReport report;
   const bool is_driven = drive.kind != DriveKind::none;
   if (!is_finite(drive) || (is_driven && mechanism.model.finger.body == kGround)) {
