@@ -5,6 +5,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "erard/mechanics/contact_frames.hpp"
 #include "parameters.hpp"
 
 namespace erard {
@@ -251,11 +252,27 @@ class Builder {
     if (section.choice("axis", {"contact_normal", "fixed"}) == "fixed") {
       felt.axis = FeltAxis::fixed;
       felt.direction = number(section, "direction", "rad", Rule::any);
+      check_axis(section, contact);
     }
     felt.place = felt.is_carried_by_a ? zone_a : zone_b;
     const int holder = carrier(contact);
     if (options_.keep_totals && holder != kGround) take_from(section, felt.mass, felt.place, holder);
     section.finish();
+  }
+
+  /// A fixed axis must point to the other body, or its felt could not be pressed.
+  void check_axis(YamlSection& section, const Contact& contact) const {
+    constexpr double kLeastLever = 0.5;  // 60 degrees from the normal
+    CoordinateVector x(file_.model.body_count);
+    for (int i = 0; i < file_.model.body_count; ++i) x[i] = file_.model.bodies[static_cast<std::size_t>(i)].initial;
+    Frames frames;
+    place_bodies(file_.model, x, frames);
+    if (locate_contact(contact, frames, 0).felt_lever >= kLeastLever) return;
+    section.reject(
+        section.line("direction"),
+        fmt::format("direction = {}{}, must point from the carrier to the other body, within 60 degrees of the "
+                    "contact's normal at the start",
+                    section.word("direction"), section.where()));
   }
 
   /// The file's mass, centre and inertia of a body include its felts: takes one of them out.
