@@ -92,7 +92,7 @@ class EventDetector {
     bool let_off = false, escapement = false, front_rail = false, string = false, backcheck = false, jack_rest = false;
   };
 
-  static constexpr double kLockOut = 0.010;      // [s] between two impacts, design.md: shorter ones are one blow
+  static constexpr double kLockOut = 0.010;      // [s] between two impacts; shorter ones are one blow
   static constexpr double kReturnDelay = 0.005;  // [s] after an impact before the jack counts as returned
 
   bool touches(const State& state, int contact) const noexcept {
