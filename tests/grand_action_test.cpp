@@ -60,7 +60,8 @@ TEST(GrandAction, RestsWhereItsFileSays) {
   const ActionFile action = test::grand_action();
   const Stroke stroke = test::play(action, lines({{0, 0}, {1, 0}}), test::default_tick(DriveKind::none), 2.0);
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(stroke.row.back().angle[i], stroke.row.front().angle[i], 2e-3);  // well inside the 5 to 40 mrad of thesis Table 3.3
+    EXPECT_NEAR(stroke.row.back().angle[i], stroke.row.front().angle[i],
+                2e-3);  // well inside the 5 to 40 mrad of thesis Table 3.3
     EXPECT_LT(std::abs(stroke.row.back().rate[i]), 1e-9);
   }
   EXPECT_GT(normal(stroke.row.back(), "LH"), 0.3);  // the hammer lies on the lever, not on the jack
