@@ -356,19 +356,25 @@ TEST(Determinism, ARunRestartedInTheMiddleGivesTheSameBits) {
   EXPECT_EQ(saved.impulse, whole.impulse);
 }
 
+/// One column of a run as a keystroke: the key's position or the finger's force.
+Keystroke column(const Stroke& stroke, double Snapshot::*value) {
+  std::vector<double> times, values;
+  for (const Snapshot& row : stroke.row) {
+    times.push_back(row.time);
+    values.push_back(row.*value);
+  }
+  const bool is_force = value == &Snapshot::force;
+  return {is_force ? KeystrokeQuantity::force : KeystrokeQuantity::position, times, values};
+}
+
 TEST(Drives, KeyDriveByThePistonRunsOwnKeyGivesItsForce) {
   // the key's motion of the piston run, replayed as a prescribed motion: the same mechanics seen from the other side
   const auto error = [](double rate) {
     TickSettings fine = test::default_tick();
     fine.set_rate(rate, 1);
     const Stroke piston = test::play(test::grand_action(), test::keystroke("piano"), fine, 0.138);
-    std::vector<double> times, values;
-    for (const Snapshot& row : piston.row) {
-      times.push_back(row.time);
-      values.push_back(row.key_position);
-    }
     fine.drive = DriveKind::key;
-    const Stroke key = test::play(test::grand_action(), Keystroke(KeystrokeQuantity::position, times, values), fine);
+    const Stroke key = test::play(test::grand_action(), column(piston, &Snapshot::key_position), fine);
     return relative_error(piston.force(), key.force(), 0.138);
   };
   // y differentiated twice shows every impact of the action, and the force is the mean over the last step: first order
@@ -381,13 +387,8 @@ TEST(Drives, ForceDriveByThePistonRunsOwnForceGivesItsKeyPosition) {
   TickSettings fine = test::default_tick();
   fine.set_rate(20000, 1);
   const Stroke piston = test::play(test::grand_action(), test::keystroke("piano"), fine, 0.110);
-  std::vector<double> times, values;
-  for (const Snapshot& row : piston.row) {
-    times.push_back(row.time);
-    values.push_back(row.force);
-  }
   fine.drive = DriveKind::force;
-  const Stroke force = test::play(test::grand_action(), Keystroke(KeystrokeQuantity::force, times, values), fine);
+  const Stroke force = test::play(test::grand_action(), column(piston, &Snapshot::force), fine);
   for (std::size_t i = 0; i < force.row.size(); ++i)
     EXPECT_NEAR(force.row[i].key_position, piston.row[i].key_position, 2e-5);  // force-driven runs drift (thesis 6.4.2)
 }

@@ -23,8 +23,8 @@ struct Shape {
 
 /// Which way a felt gives.
 enum class FeltAxis {
-  contact_normal,  // along the common normal, turning with it; reproduces a compliant contact to 0.06-0.28 %
-  fixed,           // along `direction` of the carrier's frame; moves the finger force by 1.5-3.9 % in the grand action
+  contact_normal,  // along the common normal, turning with it; reproduces a compliant contact to 0.1-0.4 %
+  fixed,           // along `direction` of the carrier's frame; moves the finger force by 2-3 % in the grand action
 };
 
 /// A felt: a light body on a slide of the body that carries it, with one coordinate, its compression d >= 0.
