@@ -32,7 +32,7 @@ constexpr double kLongestRun = 3600;  // [s]
 std::atomic<bool> is_interrupted{false};
 
 struct Options {
-  std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off";
+  std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off", felts = "bodies";
   double rate = 2000;
   std::optional<double> duration, compare_until;
   int substeps = 0;
@@ -61,6 +61,10 @@ void add_options(CLI::App& app, Options& o) {
       ->take_all();
   app.add_option("--damper", o.damper, "on: the damper takes part; off: it is clamped")
       ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  app.add_option("--felts", o.felts,
+                 "bodies: each felt is a light body with one coordinate; rigid: no felts, bodies touch directly")
+      ->check(CLI::IsMember({"bodies", "rigid"}))
       ->capture_default_str();
   app.add_option("--out", o.out,
                  "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)")
@@ -174,6 +178,7 @@ Plan make_plan(const Options& o) {
   for (const std::string& text : o.set) options.settings.push_back(parse_setting(text));
   options.without = o.without;
   options.damper = o.damper == "on";
+  options.felts = o.felts == "rigid" ? FeltModel::rigid : FeltModel::bodies;
   const Path action_path = o.action.empty() ? config_dir() / "grand_action.yaml" : Path(o.action);
   const Path keystroke_path =
       o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);

@@ -229,7 +229,7 @@ class Builder {
     contact.friction = optional_number(section, "friction", "-", Rule::not_negative);
     contact.restitution = optional_number(section, "restitution", "-", Rule::zero_to_one);
     if (section.optional("felt")) read_felt(section.section("felt"), contact, zone_a, zone_b);
-    if (contact.has_felt && contact.restitution > 0)
+    if (section.optional("felt") && contact.restitution > 0)
       section.reject(section.line("restitution"),
                      fmt::format("contact {} has a felt and a restitution, may have only one of them", name));
     if (contact.friction > 0 && contact.restitution > 0)
@@ -256,7 +256,9 @@ class Builder {
     }
     felt.place = felt.is_carried_by_a ? zone_a : zone_b;
     const int holder = carrier(contact);
-    if (options_.keep_totals && holder != kGround) take_from(section, felt.mass, felt.place, holder);
+    contact.has_felt = options_.felts != FeltModel::rigid;  // read and checked all the same
+    if (contact.has_felt && options_.keep_totals && holder != kGround)
+      take_from(section, felt.mass, felt.place, holder);
     section.finish();
   }
 

@@ -33,10 +33,17 @@ struct Setting {
   double value = 0;
 };
 
+/// What lies between the bodies of a contact that has a felt in the file.
+enum class FeltModel {
+  bodies,  // the felt as a light body on a slide
+  rigid,   // nothing: an inelastic contact of rigid bodies                           thesis 6.3.3
+};
+
 struct ActionOptions {
   std::vector<Setting> settings;     // replace values before anything is derived from them
   std::vector<std::string> without;  // names of contacts to take out of play
   bool damper = false;
+  FeltModel felts = FeltModel::bodies;
   /// The masses, first moments and moments of inertia in the file include the felts.
   ///   true   the felt's mass is taken out of its carrier, so that heavier felts leave the totals as they are
   ///   false  the felt's mass comes on top of them
