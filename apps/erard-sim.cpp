@@ -32,7 +32,7 @@ constexpr double kLongestRun = 3600;  // [s]
 std::atomic<bool> is_interrupted{false};
 
 struct Options {
-  std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off", felts = "bodies";
+  std::string action, keystroke, drive = "auto", compare, dump, out, damper = "off", felts = "massless";
   double rate = 2000;
   std::optional<double> duration, compare_until;
   int substeps = 0;
@@ -63,8 +63,9 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   app.add_option("--felts", o.felts,
-                 "bodies: each felt is a light body with one coordinate; rigid: no felts, bodies touch directly")
-      ->check(CLI::IsMember({"bodies", "rigid"}))
+                 "massless: each felt keeps its compression as history; bodies: each felt is a light body on a slide; "
+                 "rigid: no felts, bodies touch directly")
+      ->check(CLI::IsMember({"massless", "bodies", "rigid"}))
       ->capture_default_str();
   app.add_option("--out", o.out,
                  "folder for trajectory.csv, events.yaml, summary.yaml and report.html (default: no files)")
@@ -178,7 +179,7 @@ Plan make_plan(const Options& o) {
   for (const std::string& text : o.set) options.settings.push_back(parse_setting(text));
   options.without = o.without;
   options.damper = o.damper == "on";
-  options.felts = o.felts == "rigid" ? FeltModel::rigid : FeltModel::bodies;
+  options.felts = o.felts == "rigid" ? FeltModel::rigid : o.felts == "bodies" ? FeltModel::bodies : FeltModel::massless;
   const Path action_path = o.action.empty() ? config_dir() / "grand_action.yaml" : Path(o.action);
   const Path keystroke_path =
       o.keystroke.empty() ? config_dir() / "keystrokes" / "recorded_fast.csv" : Path(o.keystroke);
@@ -191,6 +192,7 @@ Plan make_plan(const Options& o) {
             {},
             0,
             0};
+  for (const std::string& note : plan.action.notes) fmt::print(stderr, "erard-sim: {}\n", note);
   if (plan.action.model.finger.body == kGround)
     throw InputError(fmt::format("{}: has no finger, so no keystroke can be played on it", action_path.string()));
   plan.duration = o.duration.value_or(plan.keystroke.end() - plan.keystroke.start());

@@ -18,10 +18,15 @@ const Contact& contact(const ActionFile& action, const char* name) {
 }
 
 TEST(ActionFile, GrandActionHasSixBodiesAndFourteenFelts) {
-  const ActionFile action = load_action(kGrandAction);
+  ActionOptions options;
+  options.felts = FeltModel::bodies;
+  const ActionFile action = load_action(kGrandAction, options);
   EXPECT_EQ(action.model.body_count, 6);
   EXPECT_EQ(action.model.contact_count, 14);
   EXPECT_EQ(build_mechanism(action.model).coordinate_count, 20);
+  EXPECT_EQ(build_mechanism(load_action(kGrandAction).model).coordinate_count, 6);  // felts without mass
+  options.felts = FeltModel::rigid;
+  EXPECT_FALSE(load_action(kGrandAction, options).model.contacts[0].has_felt);
   int frictional = 0;
   for (int c = 0; c < 14; ++c) {
     EXPECT_TRUE(action.model.contacts[static_cast<std::size_t>(c)].has_felt);

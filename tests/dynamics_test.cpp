@@ -134,6 +134,31 @@ TEST(Dynamics, FeltMassTakenFromItsCarrierLeavesTheInertiaOfTheWhole) {
   EXPECT_NEAR(assemble(model, x2, v2).M(0, 0), whole, 1e-13);
 }
 
+TEST(BranchFactor, CouplingsOfFeltsWithoutMassFillOnlyWhatTheyMust) {
+  // two pendulums of two rods; one felt couples the tip of the first to the upper rod of the second
+  Model model;
+  model.body_count = 4;
+  for (int i : {0, 1, 2, 3}) model.bodies[i] = test::pendulum_body(1, 1);
+  model.bodies[1].parent = 0;
+  model.bodies[3].parent = 2;
+  Contact& contact = model.contacts[0];
+  contact.body_a = 1;
+  contact.body_b = 2;
+  contact.has_felt = true;
+  contact.felt = test::common_felt();
+  contact.felt.mass = 0;
+  const auto ancestors = [&](int i) {
+    const AncestorTable table = build_mechanism(model).elimination;
+    return std::vector<int>(table.list[i].begin(), table.list[i].begin() + table.count[i]);
+  };
+  EXPECT_EQ(ancestors(3), std::vector<int>({2}));
+  EXPECT_EQ(ancestors(2), std::vector<int>({}));  // out of play: two trees
+  model.contact_count = 1;
+  EXPECT_EQ(ancestors(3), std::vector<int>({2, 1, 0}));  // row 3 reaches 2 alone, the rest of the list stays zero
+  EXPECT_EQ(ancestors(2), std::vector<int>({1, 0}));
+  EXPECT_EQ(ancestors(1), std::vector<int>({0}));
+}
+
 TEST(BranchFactor, SolvesLikeADenseCholesky) {
   const Model model = mixed_tree();
   const Mechanism mechanism = build_mechanism(model);
@@ -144,8 +169,9 @@ TEST(BranchFactor, SolvesLikeADenseCholesky) {
   CoordinateVector b(4);
   b << 1, -2, 3, 0.5;
   CoordinateVector ours = b;
-  factorise_branches(mechanism, factor);
-  solve_branches(mechanism, factor, ours);
+  factorise_branches(mechanism.elimination, factor);
+  solve_upwards(mechanism.elimination, factor, 3, ours.data());
+  solve_downwards(mechanism.elimination, factor, ours.data());
   EXPECT_LT((ours - M.ldlt().solve(b)).norm(), 1e-12 * ours.norm());
 }
 
@@ -157,6 +183,7 @@ double energy_drift(double h, double duration) {
   Scheme scheme = test::default_scheme();
   scheme.time_step = h;
   scheme.newton_tolerance = 1e-12;
+  scheme.placement_tolerance = 1e-12;
   State state = rest_state(mechanism, h);
   const double start = measure_energy(mechanism, state).total();
   test::run_free(mechanism, scheme, duration, state);
@@ -181,6 +208,7 @@ TEST(Dynamics, PositionConvergesWithTheSquareOfTheStep) {
     Scheme scheme;
     scheme.time_step = h;
     scheme.newton_tolerance = 1e-12;
+    scheme.placement_tolerance = 1e-12;
     State state = rest_state(mechanism, h);
     test::run_free(mechanism, scheme, 1.0, state);
     return state.x[0];

@@ -107,8 +107,9 @@ TEST(ContactFrames, LeverArmsAreTheDerivativesOfTheGap) {
       Workspace work;
       place_bodies(mechanism.model, x, work.frames);
       locate_contacts(mechanism, x, work.frames, work.contacts);
-      CoordinateVector direction(5);
-      set_direction(mechanism, work, mechanism.rows.row[0], direction);
+      set_directions(mechanism, work);
+      CoordinateVector direction = CoordinateVector::Zero(5);
+      direction_of(mechanism, work, mechanism.rows.row[0]).apply(1.0, direction);
       for (int i = 0; i < 5; ++i) {
         CoordinateVector plus = x, minus = x;
         plus[i] += e;

@@ -177,6 +177,103 @@ TEST(FeltContact, BallOnFeltFindsItsStaticCompression) {
   EXPECT_NEAR(state.x[2], expected, 1e-4 * expected);
 }
 
+/// Ball on a felt without mass: its compression is no coordinate.
+Model ball_on_massless_felt(double mass, double height) {
+  Model model = test::ball_on_felt(mass, height);
+  model.contacts[0].felt.mass = 0;
+  return model;
+}
+
+TEST(MasslessFelt, CarriesABallAtItsStaticCompression) {
+  const double mass = 0.2;
+  const Mechanism mechanism = build_mechanism(ball_on_massless_felt(mass, 0));
+  State state = rest_state(mechanism, 1.25e-4);
+  test::run_free(mechanism, test::default_scheme(), 5, state);
+  const double expected = std::pow(mass * 9.81 / 1.6e10, 1 / 2.7);  // k d^r = m g
+  EXPECT_NEAR(state.compression[0], expected, 1e-6 * expected);
+  EXPECT_NEAR(state.impulse[mechanism.normal_row[0]], mass * 9.81 * 1.25e-4, 1e-9);
+}
+
+TEST(MasslessFelt, WithoutLossesGivesTheEnergyBackWhateverTheStep) {
+  // elastic energy is an exact difference of the path law: what a bounce loses is the step in which it opens
+  for (const double h : {2.5e-4, 1e-5}) {
+    Model model = ball_on_massless_felt(0.06, 0.05);
+    model.contacts[0].felt.damping = 0;
+    const Mechanism mechanism = build_mechanism(model);
+    Scheme scheme = scheme_of(h, 0.5);
+    scheme.newton_tolerance = 1e-9;
+    State state = rest_state(mechanism, h);
+    const double start = measure_energy(mechanism, state).total();
+    double most = 0, least = 1;
+    test::run_free(mechanism, scheme, 0.5, state, [&](const StepReport&, const State& s) {
+      const double gained = measure_energy(mechanism, s).total() - start;
+      most = std::max(most, gained);
+      least = std::min(least, gained);
+    });
+    EXPECT_LT(most, 1e-9);  // Newton's tolerance, of 0.03 J
+    EXPECT_GT(least, -1e-9);
+  }
+}
+
+TEST(MasslessFelt, DampedHitLosesWhatTheLawTakes) {
+  const double mass = 0.0126, speed = 1.5;
+  const double expected = test::rebound_speed(mass, speed);
+  const Mechanism mechanism = build_mechanism(ball_on_massless_felt(mass, 0));
+  State state = rest_state(mechanism, 1e-5);
+  state.v[1] = -speed;
+  double up = 0;
+  test::run_free(mechanism, scheme_of(1e-5, 0.5), 0.01, state,
+                 [&](const StepReport&, const State& s) { up = std::max(up, s.v[1]); });
+  EXPECT_NEAR(up, expected, 2e-4 * expected);  // second order: 100 steps in the contact
+}
+
+TEST(MasslessFelt, IsWhatLighterAndLighterFeltsTendTo) {
+  const auto height_after = [](double felt_mass) {
+    Model model = test::ball_on_felt(0.06, 0.02);
+    model.contacts[0].felt.mass = felt_mass;
+    const Mechanism mechanism = build_mechanism(model);
+    State state = rest_state(mechanism, 1e-5);
+    test::run_free(mechanism, scheme_of(1e-5, 0.5), 0.1, state);
+    return state.x[1];
+  };
+  const double limit = height_after(0);
+  const double heavy = std::abs(height_after(4e-5) - limit), light = std::abs(height_after(1e-5) - limit);
+  EXPECT_LT(light, heavy / 3);
+  EXPECT_LT(light, 1e-5);  // 10 mg of 60 g, in a bounce of 2 cm
+}
+
+TEST(MasslessFelt, LeftAloneRecoversByItsLaw) {
+  // k d^r + b d^2 d' = 0 integrated with steps of 1e-9 s
+  const Mechanism mechanism = build_mechanism(ball_on_massless_felt(0.2, 1.0));
+  State state = rest_state(mechanism, 1e-4);
+  state.compression[0] = 3e-4;
+  double d = 3e-4;
+  Workspace work;
+  for (int i = 0; i < 5; ++i) {
+    step(mechanism, scheme_of(1e-4, 0.5), {}, state, work);
+    for (int j = 0; j < 100000; ++j) d -= 1e-9 * 1.6e10 / 5e7 * std::pow(d, 0.7);
+    EXPECT_NEAR(state.compression[0], d, 1e-4 * 3e-4) << i;
+  }
+  EXPECT_LT(d, 2e-4);  // it did recover
+  test::run_free(mechanism, scheme_of(1e-4, 0.5), 0.1, state);
+  EXPECT_EQ(state.compression[0], 0);
+}
+
+TEST(MasslessFelt, PressedAgainBeforeItRecoveredIsShorter) {
+  // a ball that comes down on a felt still compressed by 0.2 mm meets it 0.2 mm lower
+  const auto first_touch = [](double compression) {
+    const Mechanism mechanism = build_mechanism(ball_on_massless_felt(0.2, 1e-3));
+    State state = rest_state(mechanism, 1e-5);
+    state.compression[0] = compression;
+    state.v[1] = -5;
+    Workspace work;
+    while (state.impulse[mechanism.normal_row[0]] == 0) step(mechanism, scheme_of(1e-5, 0.5), {}, state, work);
+    return state.x[1] - 0.01;
+  };
+  EXPECT_NEAR(first_touch(0), 0, 5e-5);           // one step is 50 um
+  EXPECT_NEAR(first_touch(5e-4), -4.2e-4, 6e-5);  // some of it recovered in the 0.3 ms of the fall
+}
+
 TEST(FeltContact, HitWithoutLossesGivesTheSpeedBack) {
   Model model = test::ball_on_felt(0.06, 0.05);
   model.contacts[0].felt.damping = 0;
@@ -190,21 +287,8 @@ TEST(FeltContact, HitWithoutLossesGivesTheSpeedBack) {
 }
 
 TEST(FeltContact, DampedHitLosesWhatTheLawTakes) {
-  // independent: the same impact by RK4 on  m x'' = -m g + k d^r + b d^2 d',  d = -x, contact while the force is positive
-  const double mass = 0.0126, k = 1.6e10, r = 2.7, b = 5e7, h = 1e-7;
-  double x = 0, v = -1.5;
-  const auto acceleration = [&](double position, double rate) {
-    const double d = -position;
-    return d > 0 ? std::max(0.0, k * std::pow(d, r) - b * d * d * rate) / mass - 9.81 : -9.81;
-  };
-  do {
-    const double a1 = acceleration(x, v), v2 = v + 0.5 * h * a1, a2 = acceleration(x + 0.5 * h * v, v2);
-    const double v3 = v + 0.5 * h * a2, a3 = acceleration(x + 0.5 * h * v2, v3), v4 = v + h * a3;
-    const double a4 = acceleration(x + h * v3, v4);
-    x += h * (v + 2 * v2 + 2 * v3 + v4) / 6;
-    v += h * (a1 + 2 * a2 + 2 * a3 + a4) / 6;
-  } while (v < 0 || acceleration(x, v) > -9.81);
-
+  const double mass = 0.0126;
+  const double v = test::rebound_speed(mass, 1.5);
   Model model = test::ball_on_felt(mass, 0);
   model.contacts[0].felt.mass = 1e-6;
   const Mechanism mechanism = build_mechanism(model);

@@ -15,8 +15,9 @@ struct Problem {
   RowVector impulse;
 };
 
-/// Every `stride`-th one-step problem of a stroke at the default settings.
-std::vector<Problem> collect(const std::string& name, int stride) {
+/// Every `stride`-th one-step problem of a stroke at the default settings, by default with felts that have a mass: their
+/// contacts are rows of the problem too.
+std::vector<Problem> collect(const std::string& name, int stride, FeltModel felts = FeltModel::bodies) {
   std::vector<Problem> problems;
   RunSettings settings;
   const Keystroke keystroke = test::keystroke(name);
@@ -26,7 +27,9 @@ std::vector<Problem> collect(const std::string& name, int stride) {
   settings.on_problem = [&](const OneStepProblem& problem, const RowVector& impulse, double) {
     if (count++ % stride == 0) problems.push_back({problem, impulse});
   };
-  run(test::grand_action(), keystroke, settings);
+  ActionOptions options;
+  options.felts = felts;
+  run(test::grand_action(options), keystroke, settings);
   return problems;
 }
 
@@ -88,6 +91,14 @@ TEST(OneStepProblem, SolutionsObeyEveryLawAndAgreeWithLemke) {
               compared, rays, worst);
 }
 
+TEST(OneStepProblem, DelassusOperatorIsSymmetricWithoutFeltMasses) {
+  for (const Problem& p : collect("forte", 100, FeltModel::massless)) {
+    const auto W = p.problem.W.topLeftCorner(p.problem.size, p.problem.size);
+    EXPECT_LE((W - W.transpose()).cwiseAbs().maxCoeff(),
+              1e-12 * W.cwiseAbs().maxCoeff());  // rounding of a few products
+  }
+}
+
 TEST(OneStepProblem, DelassusOperatorIsSymmetricButForTheFelts) {
   for (const Problem& p : collect("forte", 100)) {
     const auto& W = p.problem.W;
@@ -99,9 +110,10 @@ TEST(OneStepProblem, DelassusOperatorIsSymmetricButForTheFelts) {
 }
 
 TEST(OneStepProblem, DefaultLimitLeavesSmallResiduals) {
-  for (const char* name : {"piano", "forte", "repetition"}) {
+  for (const auto& [name, felts] :
+       {std::pair{"piano", FeltModel::massless}, {"forte", FeltModel::massless}, {"repetition", FeltModel::bodies}}) {
     std::vector<double> residuals;
-    for (const Problem& p : collect(name, 1)) residuals.push_back(residual(p.problem, p.impulse));
+    for (const Problem& p : collect(name, 1, felts)) residuals.push_back(residual(p.problem, p.impulse));
     std::sort(residuals.begin(), residuals.end());
     const auto quantile = [&](double q) {
       return residuals[static_cast<std::size_t>(q * static_cast<double>(residuals.size() - 1))];
@@ -124,6 +136,21 @@ TEST(OneStepProblem, DefaultSweepLimitCostsLessThanAThousandthOfANewton) {
     EXPECT_LT(difference.rms, 1e-3) << name;
     std::printf("%s: sweep limit and tolerance cost %.1e N rms, %.1e N at most\n", name, difference.rms,
                 difference.largest);
+  }
+}
+
+TEST(OneStepProblem, RecalledFrictionIsTheSolutionThatSweepsFind) {
+  // the two differ by the sweep tolerance alone: 1e-6 of the velocities, some 1e-5 N in the finger
+  for (const auto& [name, end] : {std::pair{"piano", 0.22}, {"forte", 0.142}, {"repetition", 0.8}}) {
+    TickSettings swept = test::default_tick();
+    swept.scheme.is_friction_recalled = false;
+    const auto ours = test::play(test::grand_action(), test::keystroke(name));
+    const auto theirs = test::play(test::grand_action(), test::keystroke(name), swept);
+    const auto difference = test::difference(ours, theirs, end);
+    EXPECT_LT(difference.rms, 1e-4) << name;
+    EXPECT_LT(5 * ours.result.sweeps, 4 * theirs.result.sweeps) << name;  // it does save sweeps
+    std::printf("%s: recalled against swept friction %.1e N rms, %.1e N at most; %ld against %ld sweeps\n", name,
+                difference.rms, difference.largest, ours.result.sweeps, theirs.result.sweeps);
   }
 }
 

@@ -7,6 +7,7 @@
 // model: what is loaded and never changes
 #include "erard/model/capacity.hpp"
 #include "erard/model/name.hpp"
+#include "erard/model/heading.hpp"
 #include "erard/model/body.hpp"
 #include "erard/model/contact.hpp"
 #include "erard/model/model.hpp"
@@ -30,8 +31,11 @@
 #include "erard/solver/one_step_problem.hpp"
 #include "erard/solver/gauss_seidel.hpp"
 #include "erard/solver/workspace.hpp"
+#include "erard/solver/row_direction.hpp"
+#include "erard/solver/place_middle.hpp"
 #include "erard/solver/linearise.hpp"
 #include "erard/solver/assemble_rows.hpp"
+#include "erard/solver/slide_on.hpp"
 #include "erard/solver/step.hpp"
 
 // haptics: what the finger moves and feels

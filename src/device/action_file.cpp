@@ -202,6 +202,7 @@ class Builder {
   }
 
   void read_contacts(YamlSection contacts) {
+    lightened_ = file_.model.bodies;
     for (const std::string& name : contacts.keys()) {
       check_name(contacts, name);
       if (file_.model.contact_count == kMaxContacts)
@@ -211,6 +212,7 @@ class Builder {
       file_.model.contacts[static_cast<std::size_t>(file_.model.contact_count++)] = read;
     }
     contacts.finish();
+    if (options_.felts == FeltModel::bodies) file_.model.bodies = lightened_;
   }
 
   Contact read_contact(YamlSection section, const std::string& name) {
@@ -254,11 +256,17 @@ class Builder {
       felt.direction = number(section, "direction", "rad", Rule::any);
       check_axis(section, contact);
     }
+    if (options_.felts == FeltModel::massless && felt.axis == FeltAxis::fixed)
+      section.reject(section.line("axis"),
+                     fmt::format("axis = fixed{}, is for felts with mass: --felts bodies", section.where()));
     felt.place = felt.is_carried_by_a ? zone_a : zone_b;
     const int holder = carrier(contact);
-    contact.has_felt = options_.felts != FeltModel::rigid;  // read and checked all the same
-    if (contact.has_felt && options_.keep_totals && holder != kGround)
-      take_from(section, felt.mass, felt.place, holder);
+    if (options_.keep_totals && holder != kGround) take_from(section, felt.mass, felt.place, holder);
+    if (options_.felts != FeltModel::bodies) {  // read and checked all the same
+      note_idle_setting(section.word("mass"));
+      felt.mass = 0;
+    }
+    contact.has_felt = options_.felts != FeltModel::rigid;
     section.finish();
   }
 
@@ -279,7 +287,7 @@ class Builder {
 
   /// The file's mass, centre and inertia of a body include its felts: takes one of them out.
   void take_from(YamlSection& section, double mass, const Vector2& place, int holder) {
-    Body& body = file_.model.bodies[static_cast<std::size_t>(holder)];
+    Body& body = lightened_[static_cast<std::size_t>(holder)];
     const Vector2 moment = body.mass * body.centre - mass * place;
     if (mass >= body.mass || mass * place.squaredNorm() >= body.inertia)
       parameters_.reject(section.word("mass"),
@@ -287,6 +295,14 @@ class Builder {
     body.mass -= mass;
     body.centre = moment / body.mass;
     body.inertia -= mass * place.squaredNorm();
+  }
+
+  void note_idle_setting(const std::string& mass) {
+    for (const Setting& setting : options_.settings)
+      if (setting.name == mass)
+        file_.notes.push_back(
+            fmt::format("--set {}={} changes nothing: it is the mass of a felt, and only --felts bodies has such",
+                        setting.name, setting.value));
   }
 
   void read_finger(YamlSection section) {
@@ -351,6 +367,7 @@ class Builder {
   Parameters& parameters_;
   const ActionOptions& options_;
   ActionFile file_;
+  std::array<Body, kMaxBodies> lightened_;  // the bodies without the felts that they carry
 };
 
 }  // namespace

@@ -60,10 +60,10 @@ Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double ti
   for (int c = 0; c < model.contact_count; ++c) {
     const Contact& contact = model.contacts[c];
     const int felt = mechanism.felt_coordinate[c];
-    const int normal = find_row(mechanism.rows, RowKind::normal, c);
+    const int normal = mechanism.normal_row[c];
     const double force_c = normal < 0 ? 0.0 : state.impulse[normal] / time_step;
     const double gap = locate_contact(contact, frames, felt < 0 ? 0.0 : state.x[felt]).gap;
-    const double compression = felt >= 0 && force_c > 0 ? state.x[felt] : -gap;
+    const double compression = contact.has_felt && force_c > 0 ? compression_of(mechanism, state, c) : -gap;
     row.compression.push_back(contact.is_active ? compression : 0.0);
     row.normal.push_back(force_c);
     const int tangent = find_row(mechanism.rows, RowKind::tangential, c);
@@ -74,7 +74,8 @@ Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double ti
 
 RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSettings& settings) {
   using Clock = std::chrono::steady_clock;
-  const TickSettings& tick_settings = settings.tick;
+  TickSettings tick_settings = settings.tick;
+  if (settings.on_problem) tick_settings.scheme.is_friction_recalled = false;  // there must be a problem to show
   const Mechanism mechanism = build_mechanism(action.model);
   const KeystrokeInput input{&keystroke};
   const auto work = std::make_unique<Workspace>();

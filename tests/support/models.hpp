@@ -88,6 +88,25 @@ inline Model ball_on_felt(double mass, double height) {
   return model;
 }
 
+/// Speed of a mass after it hit the felt of common_felt(), independent of the engine: RK4 on
+///   m x'' = -m g + k d^r + b d^2 d',  d = -x, in contact while the force is positive
+inline double rebound_speed(double mass, double speed) {
+  const double k = 1.6e10, r = 2.7, b = 5e7, h = 1e-7;
+  double x = 0, v = -speed;
+  const auto acceleration = [&](double position, double rate) {
+    const double d = -position;
+    return d > 0 ? std::max(0.0, k * std::pow(d, r) - b * d * d * rate) / mass - 9.81 : -9.81;
+  };
+  do {
+    const double a1 = acceleration(x, v), v2 = v + 0.5 * h * a1, a2 = acceleration(x + 0.5 * h * v, v2);
+    const double v3 = v + 0.5 * h * a2, a3 = acceleration(x + 0.5 * h * v2, v3), v4 = v + h * a3;
+    const double a4 = acceleration(x + h * v3, v4);
+    x += h * (v + 2 * v2 + 2 * v3 + v4) / 6;
+    v += h * (a1 + 2 * a2 + 2 * a3 + a4) / 6;
+  } while (v < 0 || acceleration(x, v) > -9.81);
+  return v;
+}
+
 /// Runs a mechanism without drive.
 template <typename Observer>
 void run_free(const Mechanism& mechanism, const Scheme& scheme, double duration, State& state, Observer&& observer) {

@@ -58,7 +58,7 @@ class EventDetector {
       const Contact& string = mechanism.model.contacts[roles.string];
       hammer_radius_ = (string.body_a == roles.hammer ? string.shape_a : string.shape_b).centre.norm();
     }
-    for (int c = 0; c < mechanism.contact_count(); ++c) normal_row_[c] = find_row(mechanism.rows, RowKind::normal, c);
+    for (int c = 0; c < mechanism.contact_count(); ++c) normal_row_[c] = mechanism.normal_row[c];
   }
 
   /// Looks at the state after one internal step. @param force of the finger [N]

@@ -5,8 +5,6 @@
 
 namespace erard {
 
-using BodyVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxBodies, 1>;
-
 /// One contact in the ground frame.
 struct ContactFrame {
   double gap = 0;                        // compression of the felt included: 0 when the felt touches [m]
@@ -26,7 +24,7 @@ inline ContactFrame locate_contact(const Contact& contact, const Frames& frames,
   const Frame& frame_a = frames.of(contact.body_a);
   const Frame& frame_b = frames.of(contact.body_b);
   const bool is_fixed = contact.has_felt && contact.felt.axis == FeltAxis::fixed;
-  const Vector2 outwards = is_fixed ? unit_vector(contact.felt.direction) : Vector2::Zero();
+  const Vector2 outwards = is_fixed ? contact.felt.direction.unit_vector() : Vector2(0, 0);
   const Vector2 shift = -compression * outwards;
   const Vector2 none = Vector2::Zero();
 
@@ -43,26 +41,29 @@ inline ContactFrame locate_contact(const Contact& contact, const Frames& frames,
   const Vector2 away = on_a ? s.normal : Vector2(-s.normal);
   const Vector2 axis = is_fixed ? (on_a ? frame_a : frame_b).turned(outwards) : away;
   result.felt_slide = -axis;
-  result.felt_lever = axis.dot(away);
+  if (is_fixed) result.felt_lever = axis.dot(away);
   result.felt_point = (on_a ? frame_a : frame_b).placed(contact.felt.place);
   if (!is_fixed) result.gap += compression;
   return result;
 }
 
-/// Lever arms of one direction at one point, on the coordinates of the bodies:
+/// Lever arms of one direction at one point of a contact, in the order of its path:
 ///   lever_j = direction . d(p_B - p_A)/dx_j
-/// @param lever (bodies) is set whole; zero off the two branches.
-inline void set_levers(const Model& model, const Frames& frames, const Contact& contact, const Vector2& point,
-                       const Vector2& direction, BodyVector& lever) noexcept {
-  lever.setZero(model.body_count);
-  for (int j = contact.body_b; j != kGround; j = model.bodies[j].parent)
-    lever[j] += direction.dot(point_rate(model, frames, j, point));
-  for (int j = contact.body_a; j != kGround; j = model.bodies[j].parent)
-    lever[j] -= direction.dot(point_rate(model, frames, j, point));
+/// @param felt  lever of the contact's felt coordinate, where the path has one
+inline void set_levers(const Mechanism& mechanism, const Frames& frames, int contact, const Vector2& point,
+                       const Vector2& direction, double felt, PathValues& lever) noexcept {
+  const ContactPath& path = mechanism.path[contact];
+  for (int k = 0; k < path.count; ++k) {
+    const int j = path.coordinate[k];
+    lever[k] =
+        mechanism.is_felt(j) ? felt : path.sign[k] * direction.dot(point_rate(mechanism.model, frames, j, point));
+  }
 }
 
-inline void locate_contacts(const Mechanism& mechanism, const CoordinateVector& x, const Frames& frames,
-                            ContactFrames& contacts) noexcept {
+/// @param x  coordinates (n), indexed by []
+template <typename Positions>
+void locate_contacts(const Mechanism& mechanism, const Positions& x, const Frames& frames,
+                     ContactFrames& contacts) noexcept {
   for (int i = 0; i < mechanism.contact_count(); ++i) {
     const int felt = mechanism.felt_coordinate[i];
     contacts[i] = locate_contact(mechanism.model.contacts[i], frames, felt < 0 ? 0.0 : x[felt]);

@@ -20,7 +20,7 @@ struct PlacedShape {
 /// `shift` moves the primitive in the frame of its body: by -d along the axis of its felt when that axis is fixed.
 inline PlacedShape place_shape(const Shape& shape, const Frame& frame, const Vector2& shift) noexcept {
   PlacedShape placed{shape.kind, frame.placed(shape.centre + shift), Vector2::UnitX(), shape.half_length, shape.radius};
-  if (shape.kind == ShapeKind::segment) placed.along = frame.turned(unit_vector(shape.direction));
+  if (shape.kind == ShapeKind::segment) placed.along = frame.turned(shape.direction.unit_vector());
   return placed;
 }
 

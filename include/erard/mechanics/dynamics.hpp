@@ -73,11 +73,13 @@ inline void assemble_mass_matrix(const Mechanism& mechanism, const Frames& frame
 
 /// Loads that motion and weight need: N(x,v) v - weight                            thesis (4.14), (4.15), (4.19)
 /// Newton-Euler with all second derivatives of the coordinates zero.
+/// @param v    rates (n), indexed by []
 /// @param bias (n) set whole [N m] on hinges, [N] on slides and felts; it stands on the left of M dv/dt + bias = loads
-inline void assemble_bias(const Mechanism& mechanism, const Frames& frames, const ContactFrames& contacts,
-                          const CoordinateVector& v, const Vector2& gravity, CoordinateVector& bias) noexcept {
+template <typename Rates, typename Loads>
+void assemble_bias(const Mechanism& mechanism, const Frames& frames, const ContactFrames& contacts, const Rates& v,
+                   const Vector2& gravity, Loads& bias) noexcept {
   const Model& model = mechanism.model;
-  bias.setZero(mechanism.coordinate_count);
+  for (int i = 0; i < mechanism.coordinate_count; ++i) bias[i] = 0;
   std::array<double, kMaxBodies> rate;           // absolute angular rate [rad/s]
   std::array<Vector2, kMaxBodies> acceleration;  // of the joint, weight included as -g [m/s^2]
   std::array<Vector2, kMaxBodies> force;         // that the body and all on it need [N]
@@ -131,7 +133,7 @@ inline CoordinateMatrix gyroscopic_matrix(const Mechanism& mechanism, const Fram
                                           const ContactFrames& contacts, const CoordinateVector& v) noexcept {
   const int n = mechanism.coordinate_count;
   CoordinateMatrix N(n, n);
-  CoordinateVector plus, minus;
+  CoordinateVector plus(n), minus(n);
   for (int j = 0; j < n; ++j) {
     CoordinateVector moved = v;
     moved[j] += 1;

@@ -34,11 +34,11 @@ inline Energy measure_energy(const Mechanism& mechanism, const State& state) noe
     energy.springs += 0.5 * body.spring.stiffness * stretch * stretch;
   }
   for (int c = 0; c < model.contact_count; ++c) {
-    const int felt = mechanism.felt_coordinate[c];
-    if (felt < 0) continue;
-    energy.weight -= model.contacts[c].felt.mass *
-                     model.gravity.dot(contacts[c].felt_point + state.x[felt] * contacts[c].felt_slide);
-    energy.felts += felt_energy(model.contacts[c].felt, state.x[felt]);
+    if (!model.contacts[c].has_felt) continue;
+    const double compression = compression_of(mechanism, state, c);
+    energy.weight -=
+        model.contacts[c].felt.mass * model.gravity.dot(contacts[c].felt_point + compression * contacts[c].felt_slide);
+    energy.felts += felt_energy(model.contacts[c].felt, compression);
   }
   return energy;
 }

@@ -64,4 +64,16 @@ inline MeanForce mean_felt_force(const Felt& felt, double start, double end, dou
   return mean;
 }
 
+/// Compression of a felt that is left alone for a while: without a reaction its law is k d^r + b d^2 d' = 0, so that
+///   d^(3-r) = d_0^(3-r) - (3-r) (k/b) t,   d = d_0 exp(-(k/b) t) where r = 3;   0 at once where b = 0
+/// @param start d_0 [m], @param time t [s]; @return d [m] >= 0
+inline double relaxed_compression(const Felt& felt, double start, double time) noexcept {
+  if (start <= 0 || felt.damping <= 0) return 0;
+  const double way = time * felt.stiffness / felt.damping;
+  const double power = 3 - felt.exponent;
+  if (power == 0) return start * std::exp(-way);
+  const double left = std::pow(start, power) - power * way;
+  return left > 0 ? std::pow(left, 1 / power) : 0.0;
+}
+
 }  // namespace erard

@@ -27,7 +27,7 @@ struct Frame {
   Vector2 placed(const Vector2& local) const noexcept { return origin + turned(local); }
 };
 
-/// Frames of all bodies at the coordinates x (n).
+/// Frames of all bodies.
 struct Frames {
   Frame ground;
   std::array<Frame, kMaxBodies> body;
@@ -35,7 +35,9 @@ struct Frames {
   const Frame& of(int index) const noexcept { return index == kGround ? ground : body[index]; }
 };
 
-inline void place_bodies(const Model& model, const CoordinateVector& x, Frames& frames) noexcept {
+/// @param x  coordinates (n), indexed by []
+template <typename Positions>
+void place_bodies(const Model& model, const Positions& x, Frames& frames) noexcept {
   frames.ground = Frame{};
   for (int i = 0; i < model.body_count; ++i) {
     const Body& body = model.bodies[i];
@@ -47,7 +49,7 @@ inline void place_bodies(const Model& model, const CoordinateVector& x, Frames& 
       frame.angle += x[i];
       frame.slide = Vector2::Zero();
     } else {
-      frame.slide = unit_vector(parent.angle + body.direction);
+      frame.slide = parent.turned(body.direction.unit_vector());
       frame.origin += x[i] * frame.slide;
     }
     frame.x_axis = unit_vector(frame.angle);

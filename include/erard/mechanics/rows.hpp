@@ -1,4 +1,4 @@
-// The scalar laws of the one-step problem, one row each.
+// The scalar laws of the contacts and hinges, one row each.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 namespace erard {
 
 enum class RowKind {
+  felt,        // normal of a contact with a felt without mass: its impulse is a function of the compression
   normal,      // Signorini: gap at the end of the step >= 0, impulse >= 0, one of them zero       thesis (5.35)
   stop,        // the same for a felt that reaches its free shape: compression >= 0
-  finger,      // Kelvin-Voigt element that cannot pull
   tangential,  // Coulomb: |impulse| <= mu * normal impulse, against the velocity at the end       thesis (5.36)
   hinge,       // dry friction of a joint: |impulse| <= c_d h                                       thesis (4.6)
 };
@@ -18,7 +18,7 @@ enum class RowKind {
 /// One law. Its velocity is measured in m/s, on hinges in rad/s; its impulse in N s, on hinges in N m s.
 struct Row {
   RowKind kind = RowKind::normal;
-  int index = 0;     // contact (normal, stop, tangential) or coordinate (finger, hinge)
+  int index = 0;     // contact (felt, normal, stop, tangential) or coordinate (hinge)
   int normal = -1;   // tangential: row of the normal impulse that bounds it
   double bound = 0;  // tangential: mu [-]; hinge: c_d [N m] or [N]
 };
@@ -36,10 +36,9 @@ inline RowTable number_rows(const Model& model) noexcept {
   for (int c = 0; c < model.contact_count; ++c) {
     if (!model.contacts[c].is_active) continue;
     normal[c] = table.count;
-    add({RowKind::normal, c, -1, 0});
-    if (model.contacts[c].has_felt) add({RowKind::stop, c, -1, 0});
+    add({is_massless(model.contacts[c]) ? RowKind::felt : RowKind::normal, c, -1, 0});
+    if (is_felt_body(model.contacts[c])) add({RowKind::stop, c, -1, 0});
   }
-  if (model.finger.body != kGround) add({RowKind::finger, model.finger.body, -1, 0});
   for (int c = 0; c < model.contact_count; ++c)
     if (model.contacts[c].is_active && model.contacts[c].friction > 0)
       add({RowKind::tangential, c, normal[c], model.contacts[c].friction});

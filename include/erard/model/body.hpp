@@ -1,13 +1,10 @@
 // One rigid body and the joint on which it hangs.
 #pragma once
 
-#include <Eigen/Core>
-
+#include "erard/model/heading.hpp"
 #include "erard/model/name.hpp"
 
 namespace erard {
-
-using Vector2 = Eigen::Vector2d;
 
 inline constexpr int kGround = -1;  // parent or contact partner that never moves
 
@@ -31,7 +28,7 @@ struct Body {
   int parent = kGround;  // index below this body's own, or kGround
   JointKind joint = JointKind::hinge;
   Vector2 origin = Vector2::Zero();  // B_O: joint, in the frame of the parent [m]
-  double direction = 0;              // of a slide, in the frame of the parent [rad]
+  Heading direction;                 // of a slide, in the frame of the parent [rad]
 
   double mass = 0;                   // m_B [kg]
   Vector2 centre = Vector2::Zero();  // B_G: centre of gravity in the body's frame [m]

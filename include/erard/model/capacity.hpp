@@ -7,7 +7,7 @@ inline constexpr int kMaxBodies = 12;    // rigid bodies, the ground excluded (t
 inline constexpr int kMaxContacts = 20;  // of which each may carry one felt (the grand action has 14)
 inline constexpr int kMaxCoordinates = kMaxBodies + kMaxContacts;
 
-// scalar laws of the one-step problem: normal, tangent and felt stop of each contact, hinges, finger (grand action: 38)
-inline constexpr int kMaxRows = 3 * kMaxContacts + kMaxBodies + 1;
+// scalar laws: normal, tangent and felt stop of each contact, hinges (grand action: 23, with felt bodies 37)
+inline constexpr int kMaxRows = 3 * kMaxContacts + kMaxBodies;
 
 }  // namespace erard

@@ -16,7 +16,7 @@ enum class ShapeKind {
 struct Shape {
   ShapeKind kind = ShapeKind::circle;
   Vector2 centre = Vector2::Zero();  // [m]
-  double direction = 0;              // of a segment [rad]
+  Heading direction;                 // of a segment [rad]
   double half_length = 0;            // of a segment, corners excluded [m]
   double radius = 0;                 // of the circle (> 0), or of the corners of a segment (>= 0) [m]
 };
@@ -27,17 +27,19 @@ enum class FeltAxis {
   fixed,           // along `direction` of the carrier's frame; moves the finger force by 2-3 % in the grand action
 };
 
-/// A felt: a light body on a slide of the body that carries it, with one coordinate, its compression d >= 0.
+/// A felt: its compression d >= 0 is a coordinate of its own, with or without mass.
 ///   F = k d^r + b d^2 d'                                                        thesis (4.4), 5.4.2
+/// With mass it is a light body on a slide of the body that carries it. Without, it is always in balance: closed, its
+/// compression is that of the contact; left alone, it opens at the rate at which its force vanishes.
 struct Felt {
   double stiffness = 0;             // k [N/m^r]
   double exponent = 1;              // r >= 1 [-]
   double damping = 0;               // b [N s/m^3]
-  double mass = 0;                  // of the part that moves [kg]; belongs to the carrier's total
+  double mass = 0;                  // of the part that moves [kg]; 0: a felt without mass, along the contact normal
   Vector2 place = Vector2::Zero();  // of that mass, in the carrier's frame: the zone where the felt is touched [m]
   bool is_carried_by_a = true;
   FeltAxis axis = FeltAxis::contact_normal;
-  double direction = 0;  // of a fixed axis: outwards, from the carrier to the other body, in the carrier's frame [rad]
+  Heading direction;  // of a fixed axis: outwards, from the carrier to the other body, in the carrier's frame [rad]
 };
 
 /// Contact between a primitive of body A and one of body B: Signorini along the normal, Coulomb along the tangent.
@@ -54,5 +56,11 @@ struct Contact {
   Felt felt;
   bool is_active = true;  // taken out of play by --without
 };
+
+/// A contact whose felt is a body on a slide.
+inline bool is_felt_body(const Contact& contact) noexcept { return contact.has_felt && contact.felt.mass > 0; }
+
+/// A contact whose felt has no mass.
+inline bool is_massless(const Contact& contact) noexcept { return contact.has_felt && !(contact.felt.mass > 0); }
 
 }  // namespace erard

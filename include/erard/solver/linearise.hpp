@@ -4,45 +4,13 @@
 #include "erard/mechanics/felt_law.hpp"
 #include "erard/solver/branch_factor.hpp"
 #include "erard/solver/drive.hpp"
-#include "erard/solver/scheme.hpp"
-#include "erard/solver/workspace.hpp"
+#include "erard/solver/place_middle.hpp"
 
 namespace erard {
 
-/// Weight with which the end velocity enters the displacement of a step: theta for bodies; 1 for felts, whose light
-/// masses ring with theta = 1/2 (their force is the mean over the step, so that nothing is lost in order).
-inline double end_weight(const Mechanism& mechanism, const Scheme& scheme, int coordinate) noexcept {
-  return mechanism.is_felt(coordinate) ? 1.0 : scheme.theta;
-}
-
-/// Mean rate over the step that ends with rate `end`.                              thesis (5.37), (5.39)
-inline double mean_rate(const Mechanism& mechanism, const Scheme& scheme, const State& state, int i,
-                        double end) noexcept {
-  const double weight = end_weight(mechanism, scheme, i);
-  return (1 - weight) * state.v[i] + weight * end;
-}
-
-/// Places everything at t + theta h of the current iterate; felts at the middle of their path.
-inline void place_middle(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+/// Adds joint springs, viscous losses and the laws of felts with mass to residual and iteration matrix.
+inline void add_own_laws(const Mechanism& mechanism, const Scheme& scheme, const State& state,
                          Workspace& work) noexcept {
-  const int n = mechanism.coordinate_count;
-  work.middle_velocity.resize(n);
-  work.middle_position.resize(n);
-  for (int i = 0; i < n; ++i) {
-    const double rate = mean_rate(mechanism, scheme, state, i, work.end_velocity[i]);
-    const double part = mechanism.is_felt(i) ? 0.5 : scheme.theta;
-    work.middle_velocity[i] = rate;
-    work.middle_position[i] = state.x[i] + part * scheme.time_step * rate;
-  }
-  place_bodies(mechanism.model, work.middle_position, work.frames);
-  locate_contacts(mechanism, work.middle_position, work.frames, work.contacts);
-  assemble_mass_matrix(mechanism, work.frames, work.contacts, work.mass_matrix);
-  assemble_bias(mechanism, work.frames, work.contacts, work.middle_velocity, mechanism.model.gravity, work.bias);
-}
-
-/// Adds joint springs, viscous losses and felt laws to residual and iteration matrix.
-inline void add_compliances(const Mechanism& mechanism, const Scheme& scheme, const State& state,
-                            Workspace& work) noexcept {
   const double h = scheme.time_step;
   const double theta = scheme.theta;
   auto& R = work.smooth_residual;
@@ -63,39 +31,104 @@ inline void add_compliances(const Mechanism& mechanism, const Scheme& scheme, co
   }
 }
 
-/// Takes the clamped and the prescribed coordinates out: their rows become end velocity = end velocity.
-inline void fix_coordinates(const Mechanism& mechanism, Workspace& work) noexcept {
-  for (int p = 0; p < mechanism.coordinate_count; ++p) {
-    if (!work.is_fixed[p]) continue;
-    for (int j = mechanism.parent[p]; j != kGround; j = mechanism.parent[j]) work.iteration_matrix(p, j) = 0;
-    for (int i = p + 1; i < mechanism.coordinate_count; ++i) work.iteration_matrix(i, p) = 0;
-    work.iteration_matrix(p, p) = 1;
-    work.scratch[p] = 0;
+/// Felts without mass: each contact gives over the step the mean of the felt's law along its path,
+///   r = h max(0, F(d_n -> d_e)),   d_e = -gap at the end of the step
+/// It cannot pull: where F would, the felt is left behind.
+inline void add_massless_felts(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                               Workspace& work) noexcept {
+  const double h = scheme.time_step;
+  for (int c = 0; c < mechanism.contact_count(); ++c) {
+    CompliantImpulse& law = work.felt[c];
+    law = {};
+    const int number = mechanism.normal_row[c];
+    if (number < 0 || mechanism.rows.row[number].kind != RowKind::felt) continue;
+    const Row& row = mechanism.rows.row[number];
+    const double start = state.compression[c];
+    const double end = -end_gap(mechanism, work, row, work.end_shift);
+    if (start <= 0 && end <= 0) continue;
+    const MeanForce mean = mean_felt_force(mechanism.model.contacts[c].felt, start, end, h);
+    if (mean.force <= 0) continue;
+    law = {h * mean.force, h * h * scheme.theta * mean.slope};
+    const RowDirection direction = direction_of(mechanism, work, row);
+    direction.apply(-law.impulse, work.smooth_residual);
+    direction.couple(law.loss, work.iteration_matrix);
   }
 }
 
-/// Smooth terms, iteration matrix (factored) and free velocity
-///   R = M (v - v_n) + h [N v - weight + c_v v + kappa (x - x_0) + felts - drive]_{n+theta}
+/// The finger: a given force, or the Kelvin-Voigt element of the drive `piston`, taken at t + theta h,
+///   r = h max(0, a (Y - y) + b (Y' - y'))                                        thesis 5.4.1, Table 3.1
+inline void add_finger(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, Workspace& work) noexcept {
+  const Finger& finger = mechanism.model.finger;
+  const double h = scheme.time_step;
+  const double theta = scheme.theta;
+  const double value = (1 - theta) * drive.from.value + theta * drive.to.value;
+  work.finger = {};
+  if (drive.kind == DriveKind::force) work.finger.impulse = h * value;
+  if (drive.kind == DriveKind::piston) {
+    const double a = finger.stiffness;
+    const double b = finger.damping;
+    const double rate = (1 - theta) * drive.from.rate + theta * drive.to.rate;
+    const double y = -finger.arm * (work.middle_position[finger.body] - mechanism.model.bodies[finger.body].initial);
+    const double force = a * (value - y) + b * (rate + finger.arm * work.middle_velocity[finger.body]);
+    if (force > 0) work.finger = {h * force, h * theta * (a * theta * h + b)};
+  }
+  if (work.finger.impulse == 0) return;
+  work.smooth_residual[finger.body] += finger.arm * work.finger.impulse;
+  work.iteration_matrix(finger.body, finger.body) += finger.arm * finger.arm * work.finger.loss;
+}
+
+/// R <- M (v - v_n) + h bias,   A <- M
+inline void add_inertia(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                        Workspace& work) noexcept {
+  const int n = mechanism.coordinate_count;
+  Coordinates gained;
+  for (int i = 0; i < n; ++i) gained[i] = work.end_velocity[i] - state.v[i];
+  for (int i = 0; i < n; ++i) {
+    double sum = scheme.time_step * work.bias[i];
+    for (int j = 0; j < n; ++j) sum += work.mass_matrix(i, j) * gained[j];
+    work.smooth_residual[i] = sum;
+  }
+  work.iteration_matrix = work.mass_matrix;
+}
+
+/// Smooth terms and iteration matrix about the current iterate v of the end velocity,
+///   R = M (v - v_n) + h [N v - weight + c_v v + kappa (x - x_0) + felts - finger]_{n+theta}
 ///   A = dR/dv ~ M + h theta C + h^2 theta^2 K
-///   v_free = v - A^-1 R                                  v: current iterate of the end velocity
 inline void linearise(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, const State& state,
                       Workspace& work) noexcept {
-  const double h = scheme.time_step;
-  const Finger& finger = mechanism.model.finger;
-  place_middle(mechanism, scheme, state, work);
+  find_middle(mechanism, scheme, state, work);
+  find_shift(mechanism, scheme, state, work, work.end_velocity, work.end_shift);
+  add_inertia(mechanism, scheme, state, work);
+  add_own_laws(mechanism, scheme, state, work);
+  add_massless_felts(mechanism, scheme, state, work);
+  add_finger(mechanism, scheme, drive, work);
+}
 
-  work.smooth_residual = work.mass_matrix * (work.end_velocity - state.v) + h * work.bias;
-  work.iteration_matrix = work.mass_matrix;
-  add_compliances(mechanism, scheme, state, work);
-  if (drive.kind == DriveKind::force)
-    work.smooth_residual[finger.body] +=
-        h * finger.arm * ((1 - scheme.theta) * drive.from.value + scheme.theta * drive.to.value);
+/// Factors A with some coordinates taken out: their change is what stands in the load.
+inline void factorise_without(const Mechanism& mechanism, const std::array<bool, kMaxCoordinates>& is_out,
+                              Workspace& work) noexcept {
+  const int n = mechanism.coordinate_count;
+  work.factor = work.iteration_matrix;
+  for (int p = 0; p < n; ++p) {
+    if (!is_out[p]) continue;
+    for (int j = 0; j < p; ++j) work.factor(p, j) = 0;
+    for (int i = p + 1; i < n; ++i) work.factor(i, p) = 0;
+    work.factor(p, p) = 1;
+  }
+  factorise_branches(mechanism.elimination, work.factor);
+}
 
-  work.scratch = work.smooth_residual;
-  fix_coordinates(mechanism, work);
-  factorise_branches(mechanism, work.iteration_matrix);
-  solve_branches(mechanism, work.iteration_matrix, work.scratch);
-  work.free_velocity = work.end_velocity - work.scratch;
+/// Change of the end velocity without the rows in play, and where it leads,
+///   A dv = -R,   v_free = v + dv
+inline void move_freely(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                        Workspace& work) noexcept {
+  const int n = mechanism.coordinate_count;
+  factorise_without(mechanism, work.is_fixed, work);
+  for (int i = 0; i < n; ++i) work.change[i] = work.is_fixed[i] ? 0.0 : -work.smooth_residual[i];
+  solve_upwards(mechanism.elimination, work.factor, n - 1, work.change.data());
+  solve_downwards(mechanism.elimination, work.factor, work.change.data());
+  for (int i = 0; i < n; ++i) work.free_velocity[i] = work.end_velocity[i] + work.change[i];
+  find_shift(mechanism, scheme, state, work, work.free_velocity, work.free_shift);
 }
 
 }  // namespace erard

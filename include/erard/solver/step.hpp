@@ -1,8 +1,8 @@
 // START HERE: one step of the mechanism.
 #pragma once
 
-#include "erard/solver/assemble_rows.hpp"
 #include "erard/solver/gauss_seidel.hpp"
+#include "erard/solver/slide_on.hpp"
 
 namespace erard {
 
@@ -22,7 +22,7 @@ struct StepReport {
   double finger_force = 0;   // mean over the step, positive when the finger presses [N]
 };
 
-/// First guess: the velocities of the start; prescribed and clamped coordinates as they will be.
+/// First guess: the velocities change as they did in the step before; prescribed and clamped coordinates as they will be.
 inline void predict(const Mechanism& mechanism, const Drive& drive, const State& state, Workspace& work) noexcept {
   const Model& model = mechanism.model;
   work.is_fixed.fill(false);
@@ -31,121 +31,182 @@ inline void predict(const Mechanism& mechanism, const Drive& drive, const State&
     if (mechanism.felt_coordinate[c] >= 0) work.is_fixed[mechanism.felt_coordinate[c]] = !model.contacts[c].is_active;
   if (drive.kind == DriveKind::key) work.is_fixed[model.finger.body] = true;
 
-  work.end_velocity = state.v;
   for (int i = 0; i < mechanism.coordinate_count; ++i)
-    if (work.is_fixed[i]) work.end_velocity[i] = 0;
+    work.end_velocity[i] = work.is_fixed[i] ? 0.0 : state.v[i] + state.change[i];
   if (drive.kind == DriveKind::key) work.end_velocity[model.finger.body] = -drive.to.rate / model.finger.arm;
   work.guess = state.impulse;
-  work.scratch.resize(mechanism.coordinate_count);
-  work.all_directions.resize(mechanism.coordinate_count, mechanism.rows.count);
   work.is_in_play.fill(false);
 }
 
-/// Impulses of the rows in play, from the last ones known: of the step before, then of the linearisation before.
-inline SweepReport solve_rows(const Scheme& scheme, Workspace& work) noexcept {
+/// Impulses of the rows in play, from the last ones known: of the step before, then of the linearisation before; and the
+/// change of the end velocity with them, dv = dv_free + A^-1 H r.
+inline SweepReport sweep_rows(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                              Workspace& work) noexcept {
+  const int n = mechanism.coordinate_count;
+  move_freely(mechanism, scheme, state, work);
+  choose_rows(mechanism, state, work);
+  assemble_problem(mechanism, scheme, state, work);
   work.impulse.resize(work.row_count);
-  for (int i = 0; i < work.row_count; ++i) work.impulse[i] = work.guess[work.row[i]];
+  for (int j = 0; j < work.row_count; ++j) work.impulse[j] = work.guess[work.row[j]];
   const SweepReport report = sweep_gauss_seidel(work.problem, scheme, work.impulse);
+
   work.guess.setZero();
-  for (int i = 0; i < work.row_count; ++i) work.guess[work.row[i]] = work.impulse[i];
+  Coordinates gain{};
+  for (int j = 0; j < work.row_count; ++j) {
+    work.guess[work.row[j]] = work.impulse[j];
+    for (int i = 0; i <= work.last[j]; ++i) gain[i] += work.half[j][i] * work.impulse[j];
+  }
+  solve_downwards(mechanism.elimination, work.factor, gain.data());
+  for (int i = 0; i < n; ++i) work.change[i] += gain[i];
   return report;
 }
 
 /// Puts rows in play whose contact or stop the new velocity would violate. @return whether there was one
-inline bool find_violations(const Mechanism& mechanism, const Scheme& scheme, const State& state,
-                            Workspace& work) noexcept {
+inline bool find_violations(const Mechanism& mechanism, Workspace& work) noexcept {
   bool found = false;
   for (int k = 0; k < mechanism.rows.count; ++k) {
-    const Row& row = mechanism.rows.row[k];
-    if (work.is_in_play[k] || (row.kind != RowKind::normal && row.kind != RowKind::stop)) continue;
-    const Direction direction = std::as_const(work.all_directions).col(k);
-    work.is_in_play[k] = end_gap(mechanism, scheme, state, work, row, direction, work.end_velocity) < 0;
+    const RowKind kind = mechanism.rows.row[k].kind;
+    if (work.is_in_play[k] || (kind != RowKind::normal && kind != RowKind::stop)) continue;
+    work.is_in_play[k] = end_gap(mechanism, work, mechanism.rows.row[k], work.end_shift) < 0;
     found = found || work.is_in_play[k];
   }
   return found;
 }
 
-/// End velocity of this linearisation; @return its change, each coordinate weighted by its pivot D of A = L^T D L (the
-/// inertia that moves when the coordinates below it are free), relative to the velocity at hand and to what one step of
-/// free fall gives, so that rest has a scale.
-inline double update_velocity(const Mechanism& mechanism, const Scheme& scheme, Workspace& work) noexcept {
-  work.scratch = work.free_velocity;
-  work.scratch.noalias() += work.velocity_per_impulse * work.impulse;
-  const double fall = scheme.time_step * mechanism.model.gravity.norm();
-  double change = 0;
-  double energy = mechanism.total_mass * fall * fall;
-  for (int i = 0; i < mechanism.coordinate_count; ++i) {
-    const double d = work.iteration_matrix(i, i);
-    const double step = work.scratch[i] - work.end_velocity[i];
-    change += d * step * step;
-    energy += d * work.scratch[i] * work.scratch[i];
+/// End velocity of this linearisation, and the impulses of the laws that are functions of it.
+inline void update_velocity(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                            Workspace& work) noexcept {
+  for (int i = 0; i < mechanism.coordinate_count; ++i) work.end_velocity[i] += work.change[i];
+  find_shift(mechanism, scheme, state, work, work.end_velocity, work.end_shift);
+  for (int c = 0; c < mechanism.contact_count(); ++c) {
+    const int number = mechanism.normal_row[c];
+    if (number < 0 || mechanism.rows.row[number].kind != RowKind::felt) continue;
+    const CompliantImpulse& law = work.felt[c];
+    const RowDirection direction = direction_of(mechanism, work, mechanism.rows.row[number]);
+    work.guess[number] = law.impulse > 0 ? std::max(0.0, law.impulse - law.loss * direction.along(work.change)) : 0.0;
   }
-  work.end_velocity = work.scratch;
-  return change > 0 ? std::sqrt(change / energy) : 0.0;
+  const Finger& finger = mechanism.model.finger;
+  if (work.finger.loss > 0) work.finger.impulse += finger.arm * work.finger.loss * work.change[finger.body];
+}
+
+/// How far the end velocity moved in a linearisation, and since the frames were placed.
+struct Movement {
+  double last = 0;          // [-]
+  double since_placed = 0;  // [-]
+};
+
+/// Measured as kinetic energy, roughly (the diagonal of M), as a part of that of the end velocity and of what one step of
+/// free fall gives, so that rest has a scale; the square root of that.
+inline Movement measure_movement(const Mechanism& mechanism, const Scheme& scheme, const Workspace& work) noexcept {
+  const double h = scheme.time_step;
+  double last = 0, since_placed = 0;
+  double whole = mechanism.total_mass * h * h * mechanism.model.gravity.squaredNorm();
+  for (int i = 0; i < mechanism.coordinate_count; ++i) {
+    const double mass = work.mass_matrix(i, i);
+    const double since = work.end_velocity[i] - work.placed_velocity[i];
+    last += mass * work.change[i] * work.change[i];
+    since_placed += mass * since * since;
+    whole += mass * work.end_velocity[i] * work.end_velocity[i];
+  }
+  if (!(whole > 0)) return {};
+  return {std::sqrt(last / whole), std::sqrt(since_placed / whole)};
 }
 
 /// Projects the penetration of contacts without felt away: smallest displacement in the metric of A.
-inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme, const State& state, Workspace& work,
-                             CoordinateVector& end) noexcept {
+inline void close_rigid_gaps(const Mechanism& mechanism, Workspace& work) noexcept {
   constexpr int kProjectionSweeps = 20;  // bounded: what is left is taken up by the next step
-  auto& shift = work.scratch;
-  shift.setZero();
   bool is_closed = false;
   for (int sweep = 0; sweep < kProjectionSweeps && !is_closed; ++sweep) {
     is_closed = true;
-    for (int i = 0; i < work.row_count; ++i) {
-      const Row& row = mechanism.rows.row[work.row[i]];
+    for (int j = 0; j < work.row_count; ++j) {
+      const Row& row = mechanism.rows.row[work.row[j]];
       if (!is_rigid(mechanism, row)) continue;
-      const Direction direction = std::as_const(work.all_directions).col(work.row[i]);
-      const double gap =
-          end_gap(mechanism, scheme, state, work, row, direction, work.end_velocity) + direction.dot(shift);
+      const double gap = end_gap(mechanism, work, row, work.end_shift);
       if (gap >= 0) continue;
-      shift -= work.velocity_per_impulse.col(i) * (gap / work.problem.W(i, i));
+      Coordinates way = work.half[j];
+      solve_downwards(mechanism.elimination, work.factor, way.data());
+      for (int i = 0; i < mechanism.coordinate_count; ++i) work.end_shift[i] -= way[i] * gap / work.problem.W(j, j);
       is_closed = false;
     }
   }
-  end += shift;
+}
+
+/// What the equation of motion of the prescribed key lacks over the step [N m s].
+inline double key_reaction(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                           Workspace& work) noexcept {
+  const double h = scheme.time_step;
+  const int key = mechanism.model.finger.body;
+  const Body& body = mechanism.model.bodies[key];
+  find_middle(mechanism, scheme, state, work);
+  double lacking = h * (work.bias[key] + body.viscous * work.middle_velocity[key] +
+                        body.spring.stiffness * (work.middle_position[key] - body.spring.rest));
+  for (int i = 0; i < mechanism.coordinate_count; ++i)
+    lacking += work.mass_matrix(key, i) * (work.end_velocity[i] - state.v[i]);
+  for (int k = 0; k < mechanism.rows.count; ++k) {
+    const RowDirection direction = direction_of(mechanism, work, mechanism.rows.row[k]);
+    for (int j = 0; j < direction.count; ++j)
+      if (direction.coordinate[j] == key) lacking -= direction.lever[j] * work.guess[k];
+  }
+  return lacking;
 }
 
 /// Mean force of the finger over the step, positive when it presses                             thesis 6, (5.30)
-/// `piston`: impulse of its row; `key`: what the equation of motion of the prescribed coordinate lacks. The dry friction
-/// of its own hinge is part of that: against the rate, and of a key that is held still as much as it can take over.
-inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive,
-                           const Workspace& work) noexcept {
+/// `key`: what holds the key on its way. The dry friction of its own hinge is part of that: against the rate, and of a
+/// key that is held still as much as it can take over.
+inline double finger_force(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, const State& state,
+                           Workspace& work) noexcept {
   const double h = scheme.time_step;
   const Finger& finger = mechanism.model.finger;
-  if (drive.kind == DriveKind::force) return (1 - scheme.theta) * drive.from.value + scheme.theta * drive.to.value;
-  if (drive.kind == DriveKind::key) {
-    double lacking = work.smooth_residual[finger.body];
-    for (int i = 0; i < work.row_count; ++i) lacking -= work.all_directions(finger.body, work.row[i]) * work.impulse[i];
-    const double dry = mechanism.model.bodies[finger.body].dry * h;
-    const double rate = work.end_velocity[finger.body];
-    lacking += rate > 0 ? dry : rate < 0 ? -dry : -std::clamp(lacking, -dry, dry);
-    return -lacking / (finger.arm * h);
+  if (drive.kind != DriveKind::key) return work.finger.impulse / h;
+  const double lacking = key_reaction(mechanism, scheme, state, work);
+  const double dry = mechanism.model.bodies[finger.body].dry * h;
+  const double rate = work.end_velocity[finger.body];
+  const double friction = rate > 0 ? dry : rate < 0 ? -dry : -std::clamp(lacking, -dry, dry);
+  return -(lacking + friction) / (finger.arm * h);
+}
+
+/// Compressions of the felts without mass at the end of the step: of a closed contact its own, else what is left.
+inline void keep_felt_history(const Mechanism& mechanism, const Scheme& scheme, State& state,
+                              const Workspace& work) noexcept {
+  for (int k = 0; k < mechanism.rows.count; ++k) {
+    const Row& row = mechanism.rows.row[k];
+    if (row.kind != RowKind::felt) continue;
+    double& compression = state.compression[row.index];
+    const bool is_closed = work.guess[k] > 0;
+    if (!is_closed && compression <= 0) continue;
+    const double overlap = -end_gap(mechanism, work, row, work.end_shift);
+    const Felt& felt = mechanism.model.contacts[row.index].felt;
+    const double left = is_closed ? 0.0 : relaxed_compression(felt, compression, scheme.time_step);
+    compression = std::max({overlap, left, 0.0});
   }
-  for (int i = 0; i < work.row_count; ++i)
-    if (mechanism.rows.row[work.row[i]].kind == RowKind::finger) return work.impulse[i] / h;
-  return 0;
+}
+
+/// Whether the iterate is made of numbers.
+inline bool is_finite(const Mechanism& mechanism, const Workspace& work) noexcept {
+  bool is_good = work.guess.allFinite();
+  for (int i = 0; i < mechanism.coordinate_count; ++i)
+    is_good = is_good && std::isfinite(work.end_velocity[i]) && std::isfinite(work.end_shift[i]);
+  return is_good;
 }
 
 /// Takes the iterate over as the state at the end of the step, unless a number is not finite.
 inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, State& state, Workspace& work,
                    StepReport& report) noexcept {
   const Finger& finger = mechanism.model.finger;
-  auto& end = work.end_position;
-  end.resize(mechanism.coordinate_count);
-  for (int i = 0; i < mechanism.coordinate_count; ++i)
-    end[i] = state.x[i] + scheme.time_step * mean_rate(mechanism, scheme, state, i, work.end_velocity[i]);
-  close_rigid_gaps(mechanism, scheme, state, work, end);
-  if (drive.kind == DriveKind::key)
-    end[finger.body] = mechanism.model.bodies[finger.body].initial - drive.to.value / finger.arm;
-  if (!work.end_velocity.allFinite() || !work.impulse.allFinite() || !end.allFinite()) {
+  if (!is_finite(mechanism, work)) {
     report.status = StepStatus::not_finite;
     return;
   }
-  report.finger_force = finger_force(mechanism, scheme, drive, work);
-  state.x = end;
-  state.v = work.end_velocity;
+  report.finger_force = finger_force(mechanism, scheme, drive, state, work);
+  keep_felt_history(mechanism, scheme, state, work);
+  if (mechanism.has_rigid_contacts) close_rigid_gaps(mechanism, work);
+  for (int i = 0; i < mechanism.coordinate_count; ++i) {
+    state.x[i] = work.placed_position[i] + work.end_shift[i];
+    state.change[i] = work.end_velocity[i] - state.v[i];
+    state.v[i] = work.end_velocity[i];
+  }
+  if (drive.kind == DriveKind::key)
+    state.x[finger.body] = mechanism.model.bodies[finger.body].initial - drive.to.value / finger.arm;
   state.impulse = work.guess;
   state.time += scheme.time_step;
 }
@@ -165,22 +226,27 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     return report;
   }
   predict(mechanism, drive, state, work);
+  place_middle(mechanism, scheme, state, work);
   bool is_done = false;
-  bool is_swept = false;
+  SweepReport swept;
   while (!is_done && report.linearisations < scheme.newton_limit) {
     ++report.linearisations;
     linearise(mechanism, scheme, drive, state, work);
-    choose_rows(mechanism, scheme, drive, state, work);
-    assemble_problem(mechanism, scheme, drive, state, work);
-    const SweepReport swept = solve_rows(scheme, work);
+    if (slide_on(mechanism, scheme, work))
+      swept = {0, true, 0};
+    else
+      swept = sweep_rows(mechanism, scheme, state, work);
+    update_velocity(mechanism, scheme, state, work);
+    const Movement moved = measure_movement(mechanism, scheme, work);
+    const bool is_complete = !find_violations(mechanism, work);
+    const bool is_placed = moved.since_placed <= scheme.placement_tolerance;
+    if (!is_placed) place_middle(mechanism, scheme, state, work);
+    is_done = is_complete && is_placed && moved.last <= scheme.newton_tolerance;
     report.sweeps += swept.sweeps;
-    is_swept = swept.is_converged;
     report.sweep_error = swept.error;
-    report.newton_change = update_velocity(mechanism, scheme, work);
-    const bool is_complete = !find_violations(mechanism, scheme, state, work);
-    is_done = is_complete && report.newton_change <= scheme.newton_tolerance;
+    report.newton_change = moved.last;
   }
-  if (!is_done || !is_swept) report.status = StepStatus::not_converged;
+  if (!is_done || !swept.is_converged) report.status = StepStatus::not_converged;
   accept(mechanism, scheme, drive, state, work, report);
   return report;
 }
