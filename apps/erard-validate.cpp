@@ -13,6 +13,7 @@
 #include "erard/device/output_file.hpp"
 #include "erard/version.hpp"
 #include "study/section.hpp"
+#include "study/simple_models.hpp"
 
 namespace {
 
@@ -26,7 +27,9 @@ struct Study {
 };
 
 /// In the order of the document.
-const std::vector<Study> kStudies{};
+const std::vector<Study> kStudies{
+    {"simple_models", study::simple_models_section},  // 2
+};
 
 constexpr const char* kPreamble =
     "# The thesis, reproduced\n"
