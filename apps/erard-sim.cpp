@@ -49,8 +49,8 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"auto", "piston", "key", "force"}));
   app.add_option("--rate", o.rate, "rate of the output in Hz, 400 to 50000")->capture_default_str();
   app.add_option("--substeps", o.substeps,
-                 "internal steps per output step, 1 to 1000 (default: as few as keep an internal step at 125 us or "
-                 "less, 4 at 2 kHz)")
+                 "internal steps per output step, 1 to 1000, all of one length (default: of 250 us at most, and split "
+                 "down to 62.5 us where the motion is not as guessed)")
       ->check(CLI::Range(1, kMostSubsteps));
   app.add_option("--duration", o.duration, "simulated time in s, up to 3600 (default: the length of the keystroke)");
   app.add_option("--without", o.without, "contacts to leave out, for instance --without KH,HG")->delimiter(',');

@@ -26,8 +26,8 @@ struct Played {
 Played play(const ActionFile& action, const Keystroke& keystroke, double theta, int substeps) {
   Played played;
   RunSettings settings;
-  settings.tick.scheme.theta = theta;
   settings.tick.set_rate(2000, substeps);
+  settings.tick.scheme.theta = theta;
   settings.duration = keystroke.end();
   settings.on_row = [&](const Snapshot& row) {
     played.force.time.push_back(row.time);

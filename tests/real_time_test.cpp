@@ -96,7 +96,8 @@ TEST(RealTime, PoisonedScratchChangesNoBit) {
 
 TEST(RealTime, InputThatIsNotFiniteLeavesTheStateAsItWas) {
   const Mechanism mechanism = build_mechanism(test::grand_action().model);
-  const TickSettings settings = test::default_tick();
+  TickSettings settings;
+  settings.set_rate(2000, 4);
   const auto work = std::make_unique<Workspace>();
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     State state = rest_state(mechanism, settings.scheme.time_step);
@@ -115,7 +116,8 @@ TEST(RealTime, InputThatIsNotFiniteLeavesTheStateAsItWas) {
 
 TEST(RealTime, AbsurdInputStaysBoundedAndIsReported) {
   const Mechanism mechanism = build_mechanism(test::grand_action().model);
-  const TickSettings settings = test::default_tick();
+  TickSettings settings;
+  settings.set_rate(2000, 4);
   const auto work = std::make_unique<Workspace>();
   State state = rest_state(mechanism, settings.scheme.time_step);
   Drive drive{DriveKind::piston, {0, 0}, {0.05, 100}};  // 5 cm in an eighth of a millisecond
@@ -159,7 +161,9 @@ TEST(RealTime, ScaledActionsPlayTheSame) {
   const Keystroke keystroke = test::keystroke("forte");
   const auto force_at = [&](double s) {
     const Mechanism mechanism = build_mechanism(scaled(s));
-    Scheme scheme = test::default_tick().scheme;
+    TickSettings settings;
+    settings.set_rate(2000, 4);
+    Scheme scheme = settings.scheme;
     scheme.time_step *= std::sqrt(s);
     State state = rest_state(mechanism, scheme.time_step);
     const auto work = std::make_unique<Workspace>();

@@ -30,7 +30,7 @@ ActionFile grand_action() { return load_action(ERARD_CONFIG_DIR "/grand_action.y
 
 Snapshot rest_snapshot(const ActionFile& action) {
   const Mechanism mechanism = build_mechanism(action.model);
-  return take_snapshot(mechanism, rest_state(mechanism, 1e-4), 1e-4, {}, 0);
+  return take_snapshot(mechanism, rest_state(mechanism, 1e-4), {}, 0);
 }
 
 void save_report(const std::filesystem::path& path, const Report& report) {

@@ -20,6 +20,7 @@ void emit_summary(YAML::Emitter& out, const RunSummary& s) {
   out << YAML::Key << "drive" << YAML::Value << name_of(s.tick.drive);
   out << YAML::Key << "rate_Hz" << YAML::Value << 1 / s.tick.period;
   out << YAML::Key << "substeps" << YAML::Value << s.tick.substeps;
+  out << YAML::Key << "refinement" << YAML::Value << s.tick.refinement;
   out << YAML::Key << "theta" << YAML::Value << s.tick.scheme.theta;
   out << YAML::Key << "start_s" << YAML::Value << s.start;
   out << YAML::Key << "simulated_s" << YAML::Value << simulated;
@@ -172,13 +173,14 @@ std::string describe(const RunSummary& s) {
   fmt::format_to(out,
                  "speed        {:.0f} times faster than real time; a period of {:.0f} us takes {:.1f} us (median; 99 % "
                  "{:.1f}, worst {:.0f}), "
-                 "a step {:.1f} us\n",
+                 "a step {:.2f} us\n",
                  simulated / std::max(r.computing_time, 1e-9), 1e6 * s.tick.period, 1e6 * r.tick_time.quantile(0.5),
-                 1e6 * r.tick_time.quantile(0.99), 1e6 * r.tick_time.worst(),
-                 1e6 * r.tick_time.quantile(0.5) / s.tick.substeps);
-  fmt::format_to(out, "solver       {} steps of {:.0f} us ({} a period): {:.1f} linearisations, {:.1f} sweeps each",
-                 r.steps, 1e6 * s.tick.scheme.time_step, s.tick.substeps, static_cast<double>(r.linearisations) / steps,
-                 static_cast<double>(r.sweeps) / steps);
+                 1e6 * r.tick_time.quantile(0.99), 1e6 * r.tick_time.worst(), 1e6 * r.computing_time / steps);
+  fmt::format_to(out, "solver       {} steps of {:.1f}", r.steps, 1e6 * s.tick.scheme.time_step);
+  if (s.tick.refinement > 1) fmt::format_to(out, " to {:.1f}", 1e6 * s.tick.scheme.time_step / s.tick.refinement);
+  fmt::format_to(out, " us ({:.1f} a period): {:.2f} linearisations, {:.2f} sweeps each",
+                 static_cast<double>(r.steps) / std::max(1.0, static_cast<double>(r.periods)),
+                 static_cast<double>(r.linearisations) / steps, static_cast<double>(r.sweeps) / steps);
   fmt::format_to(out, ", {} not converged\n", r.not_converged);
   if (s.tick.scheme.time_step > kLongestGoodStep)
     fmt::format_to(out, "NOTE         steps beyond {:.0f} us miss impacts on felts; --substeps makes them shorter\n",

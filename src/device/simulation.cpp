@@ -26,8 +26,6 @@ double start_force(const Mechanism& mechanism, const TickSettings& tick, const S
 
 void count_step(const StepReport& report, double force, double time, RunResult& result) {
   ++result.steps;
-  result.linearisations += report.linearisations;
-  result.sweeps += report.sweeps;
   result.not_converged += report.status == StepStatus::not_converged;
   if (force <= result.peak_force) return;
   result.peak_force = force;
@@ -36,8 +34,7 @@ void count_step(const StepReport& report, double force, double time, RunResult& 
 
 }  // namespace
 
-Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double time_step, const DriveSample& input,
-                       double force) {
+Snapshot take_snapshot(const Mechanism& mechanism, const State& state, const DriveSample& input, double force) {
   const Model& model = mechanism.model;
   Snapshot row;
   row.time = state.time;
@@ -55,19 +52,19 @@ Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double ti
     row.angle.push_back(is_hinge ? frames.body[i].angle : state.x[i]);
     row.rate.push_back(rate);
     const int hinge = find_row(mechanism.rows, RowKind::hinge, i);
-    row.hinge_moment.push_back(hinge < 0 ? 0.0 : state.impulse[hinge] / time_step);
+    row.hinge_moment.push_back(hinge < 0 ? 0.0 : state.impulse[hinge] / state.time_step);
   }
   for (int c = 0; c < model.contact_count; ++c) {
     const Contact& contact = model.contacts[c];
     const int felt = mechanism.felt_coordinate[c];
     const int normal = mechanism.normal_row[c];
-    const double force_c = normal < 0 ? 0.0 : state.impulse[normal] / time_step;
+    const double force_c = normal < 0 ? 0.0 : state.impulse[normal] / state.time_step;
     const double gap = locate_contact(contact, frames, felt < 0 ? 0.0 : state.x[felt]).gap;
     const double compression = contact.has_felt && force_c > 0 ? compression_of(mechanism, state, c) : -gap;
     row.compression.push_back(contact.is_active ? compression : 0.0);
     row.normal.push_back(force_c);
     const int tangent = find_row(mechanism.rows, RowKind::tangential, c);
-    row.tangential.push_back(tangent < 0 ? 0.0 : state.impulse[tangent] / time_step);
+    row.tangential.push_back(tangent < 0 ? 0.0 : state.impulse[tangent] / state.time_step);
   }
   return row;
 }
@@ -85,8 +82,7 @@ RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSet
   RunResult result;
 
   const auto show = [&](double force) {
-    if (settings.on_row)
-      settings.on_row(take_snapshot(mechanism, state, tick_settings.scheme.time_step, input.at(state.time), force));
+    if (settings.on_row) settings.on_row(take_snapshot(mechanism, state, input.at(state.time), force));
   };
   const auto observe = [&](const State& now, const StepReport& report, double force) noexcept {
     detector.observe(now, force);
@@ -102,6 +98,8 @@ RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSet
     const double spent = std::chrono::duration<double>(Clock::now() - before).count();
     result.computing_time += spent;
     result.tick_time.add(spent);
+    result.linearisations += report.linearisations;
+    result.sweeps += report.sweeps;
     result.is_finite = report.status != StepStatus::not_finite;
     if (!result.is_finite) break;
     ++result.periods;

@@ -119,10 +119,10 @@ inline void run_free(const Mechanism& mechanism, const Scheme& scheme, double du
   run_free(mechanism, scheme, duration, state, [](const StepReport&, const State&) {});
 }
 
-/// Internal steps of the default tick, 0.125 ms.
+/// Four internal steps a period of 2 kHz, 0.125 ms.
 inline Scheme default_scheme() {
   TickSettings settings;
-  settings.set_rate(2000);
+  settings.set_rate(2000, 4);
   return settings.scheme;
 }
 

@@ -55,7 +55,6 @@ struct RunResult {
 RunResult run(const ActionFile& action, const Keystroke& keystroke, const RunSettings& settings);
 
 /// Snapshot of a state.
-Snapshot take_snapshot(const Mechanism& mechanism, const State& state, double time_step, const DriveSample& input,
-                       double force);
+Snapshot take_snapshot(const Mechanism& mechanism, const State& state, const DriveSample& input, double force);
 
 }  // namespace erard

@@ -1,33 +1,48 @@
 // One period of the host: input in, force out.
 #pragma once
 
+#include <limits>
+
 #include "erard/haptics/finger.hpp"
 #include "erard/solver/step.hpp"
 
 namespace erard {
 
-/// Longest internal step by default [s]: four steps at 2 kHz leave 0.2 to 0.4 % of error in the finger force where one
-/// leaves 1.5 (piano) and 5 % (forte); docs/accuracy.md.
-inline constexpr double kDefaultStep = 1.25e-4;
+/// Internal steps by default: as long as this while nothing happens [s] ...
+inline constexpr double kCalmStep = 2.5e-4;
+/// ... and as short as this where the motion is not as guessed [s].
+inline constexpr double kBusyStep = 6.25e-5;
+/// What counts as not as guessed: the accelerations of the masses change by this in one step, rms [m/s^2]. Steps as long as
+/// they may be for that cost what three fixed ones cost and err like eight: docs/accuracy.md.
+inline constexpr double kSurpriseLimit = 10;
 
 /// How a host drives the engine.
 struct TickSettings {
   DriveKind drive = DriveKind::piston;
   double period = 5e-4;  // of the output, 2 kHz [s]
-  int substeps = 4;      // internal steps a period
-  Scheme scheme;         // its time_step is period / substeps: set all three by set_rate()
+  int substeps = 2;      // internal steps a period
+  int refinement = 4;    // into so many shorter ones a step is split that its scheme refuses
+  Scheme scheme;         // its time_step is period / substeps: set all of them by set_rate()
 
-  /// @param internal_steps  a period; 0: as few as keep the internal step at kDefaultStep or below
+  TickSettings() noexcept { set_rate(2000); }
+
+  /// @param internal_steps  a period, never split; 0: as few as keep them at kCalmStep, split down to kBusyStep
   void set_rate(double rate_Hz, int internal_steps = 0) noexcept {
+    const auto count = [](double length, double step) noexcept {
+      return static_cast<int>(std::ceil(length / step - 1e-9));
+    };
     period = 1 / rate_Hz;
-    substeps = internal_steps > 0 ? internal_steps : static_cast<int>(std::ceil(period / kDefaultStep - 1e-9));
+    substeps = internal_steps > 0 ? internal_steps : count(period, kCalmStep);
     scheme.time_step = period / substeps;
+    refinement = internal_steps > 0 ? 1 : count(scheme.time_step, kBusyStep);
+    scheme.surprise_limit = refinement > 1 ? kSurpriseLimit : std::numeric_limits<double>::infinity();
   }
 };
 
 struct TickReport {
   double force = 0;                           // of the finger at the end of the period [N]
   StepStatus status = StepStatus::converged;  // the worst of its steps
+  int steps = 0;                              // internal, taken
   int linearisations = 0;
   int sweeps = 0;
 };
@@ -39,26 +54,45 @@ inline double end_force(const Mechanism& mechanism, const Drive& drive, const St
   return drive.kind == DriveKind::force ? drive.to.value : report.finger_force;
 }
 
+/// Advances the mechanism from the end of `drive` on, in `count` steps of the scheme, until one is not taken.
+/// @param drive  in: up to the start; out: up to the end of the last step taken
+template <typename Input, typename Observer>
+StepStatus advance(const Mechanism& mechanism, const Scheme& scheme, int count, const Input& input, double start,
+                   Drive& drive, State& state, Workspace& work, TickReport& report, Observer&& observer) noexcept {
+  for (int i = 1; i <= count; ++i) {
+    const Drive next{drive.kind, drive.to, input.at(start + i * scheme.time_step)};
+    const StepReport stepped = step(mechanism, scheme, next, state, work);
+    report.linearisations += stepped.linearisations;
+    report.sweeps += stepped.sweeps;
+    if (stepped.status == StepStatus::refused) return stepped.status;
+    report.status = std::max(report.status, stepped.status);
+    if (stepped.status == StepStatus::not_finite) return stepped.status;
+    drive = next;
+    ++report.steps;
+    report.force = end_force(mechanism, drive, state, stepped);
+    observer(state, stepped, report.force);
+  }
+  return StepStatus::converged;
+}
+
 /// Advances the mechanism by one period.
 /// @param input     its at(time) gives the DriveSample of any instant of the period, noexcept
 /// @param observer  called as observer(state, report, force) after each internal step, noexcept
-/// A step that is not finite leaves the state as it was and ends the period.
+/// A step that is not finite leaves the state as it was and ends the period. At most substeps (1 + refinement) steps.
 template <typename Input, typename Observer>
 TickReport tick(const Mechanism& mechanism, const TickSettings& settings, const Input& input, State& state,
                 Workspace& work, Observer&& observer) noexcept {
   TickReport report;
   Drive drive{settings.drive, {}, input.at(state.time)};
+  Scheme busy = settings.scheme;
+  busy.time_step /= settings.refinement;
+  busy.surprise_limit = std::numeric_limits<double>::infinity();
   const double start = state.time;
-  for (int i = 1; i <= settings.substeps; ++i) {
-    drive.from = drive.to;
-    drive.to = input.at(start + i * settings.scheme.time_step);
-    const StepReport stepped = step(mechanism, settings.scheme, drive, state, work);
-    report.status = std::max(report.status, stepped.status);
-    if (stepped.status == StepStatus::not_finite) break;
-    report.linearisations += stepped.linearisations;
-    report.sweeps += stepped.sweeps;
-    report.force = end_force(mechanism, drive, state, stepped);
-    observer(state, stepped, report.force);
+  for (int i = 0; i < settings.substeps && report.status != StepStatus::not_finite; ++i) {
+    const double from = start + i * settings.scheme.time_step;
+    const StepStatus taken = advance(mechanism, settings.scheme, 1, input, from, drive, state, work, report, observer);
+    if (taken == StepStatus::refused)
+      advance(mechanism, busy, settings.refinement, input, from, drive, state, work, report, observer);
   }
   return report;
 }

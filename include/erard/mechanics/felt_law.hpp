@@ -64,6 +64,23 @@ inline MeanForce mean_felt_force(const Felt& felt, double start, double end, dou
   return mean;
 }
 
+/// Mean force of a felt over a step in which a body comes at it through the air, zero until it is met:
+///   F = [E(d_1) - E(d_0)] / (d_1 - s_0) + b (d_1^3 - d_0^3) / (3 h)
+/// so that the body loses on its way from s_0 to d_1 what the felt takes from d_0 to d_1.
+/// @param from  s_0 <= d_0: where the body is at the start, negative in the air [m]; the others as above
+inline MeanForce mean_arrival_force(const Felt& felt, double from, double start, double end,
+                                    double time_step) noexcept {
+  MeanForce mean;
+  if (end <= start || end <= 0) return mean;
+  const double d0 = std::max(start, 0.0);
+  const double f1 = elastic_force(felt, end);
+  mean.force = (f1 * end - elastic_force(felt, d0) * d0) / ((felt.exponent + 1) * (end - from));
+  mean.slope = (f1 - mean.force) / (end - from);
+  mean.force += felt.damping * (end * end * end - d0 * d0 * d0) / (3 * time_step);
+  mean.slope += felt.damping * end * end / time_step;
+  return mean;
+}
+
 /// Compression of a felt that is left alone for a while: without a reaction its law is k d^r + b d^2 d' = 0, so that
 ///   d^(3-r) = d_0^(3-r) - (3-r) (k/b) t,   d = d_0 exp(-(k/b) t) where r = 3;   0 at once where b = 0
 /// @param start d_0 [m], @param time t [s]; @return d [m] >= 0

@@ -19,7 +19,8 @@ inline State rest_state(const Mechanism& mechanism, double time_step) noexcept {
   State state;
   state.x.setZero(mechanism.coordinate_count);
   state.v.setZero(mechanism.coordinate_count);
-  state.change.setZero(mechanism.coordinate_count);
+  state.acceleration.setZero(mechanism.coordinate_count);
+  state.time_step = time_step;
   state.compression.setZero(mechanism.contact_count());
   state.impulse.setZero(mechanism.rows.count);
   for (int i = 0; i < model.body_count; ++i) state.x[i] = model.bodies[i].initial;

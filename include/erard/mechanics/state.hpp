@@ -9,12 +9,13 @@ using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMax
 using ContactVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxContacts, 1>;
 
 struct State {
-  double time = 0;            // [s]
-  CoordinateVector x;         // coordinates (n): hinge angles relative to the parent [rad], slides, compressions [m]
-  CoordinateVector v;         // their rates (n); of a felt the mean over the last step
-  CoordinateVector change;    // of v over the last step (n): with it the next step is guessed
-  ContactVector compression;  // of the felts without mass (contacts), 0 for all others: their history [m]
-  RowVector impulse;          // reaction of each row over the last step (m) [N s], hinges [N m s]: the warm start
+  double time = 0;     // [s]
+  CoordinateVector x;  // coordinates (n): hinge angles relative to the parent [rad], slides, compressions [m]
+  CoordinateVector v;  // their rates (n); of a felt the mean over the last step
+  CoordinateVector acceleration;  // change of v over the last step by its length (n): the guess for the next
+  ContactVector compression;      // of the felts without mass (contacts), 0 for all others: their history [m]
+  double time_step = 0;           // length h of the last step [s]
+  RowVector impulse;              // reaction of each row over the last step (m) [N s], hinges [N m s]: the warm start
 };
 
 /// Compression of the felt of contact c, with or without mass [m].

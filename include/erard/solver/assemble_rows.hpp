@@ -39,7 +39,7 @@ inline Cone cone_of(const Mechanism& mechanism, const Scheme& scheme, const Work
 inline double free_row_velocity(const Mechanism& mechanism, const Scheme& scheme, const State& state,
                                 const Workspace& work, const Row& row) noexcept {
   if (is_positional(mechanism, row))
-    return end_gap(mechanism, work, row, work.free_shift) / (scheme.theta * scheme.time_step);
+    return gap_at(mechanism, work, row, work.free_shift) / (scheme.theta * scheme.time_step);
   const RowDirection direction = direction_of(mechanism, work, row);
   const double after = direction.along(work.free_velocity);
   if (row.kind != RowKind::normal) return after;
@@ -59,7 +59,7 @@ inline bool may_act(const Mechanism& mechanism, const State& state, const Worksp
                                                                   : work.is_in_play[row.normal];
     default:
       return (!is_rigid(mechanism, row) && state.impulse[number] > 0) ||
-             end_gap(mechanism, work, row, work.free_shift) < 0;
+             gap_at(mechanism, work, row, work.free_shift) < 0;
   }
 }
 

@@ -33,6 +33,7 @@ inline void add_own_laws(const Mechanism& mechanism, const Scheme& scheme, const
 
 /// Felts without mass: each contact gives over the step the mean of the felt's law along its path,
 ///   r = h max(0, F(d_n -> d_e)),   d_e = -gap at the end of the step
+/// and where the contact was open the mean is over the whole way of the body, the air included.
 /// It cannot pull: where F would, the felt is left behind.
 inline void add_massless_felts(const Mechanism& mechanism, const Scheme& scheme, const State& state,
                                Workspace& work) noexcept {
@@ -44,9 +45,13 @@ inline void add_massless_felts(const Mechanism& mechanism, const Scheme& scheme,
     if (number < 0 || mechanism.rows.row[number].kind != RowKind::felt) continue;
     const Row& row = mechanism.rows.row[number];
     const double start = state.compression[c];
-    const double end = -end_gap(mechanism, work, row, work.end_shift);
+    const double end = -gap_at(mechanism, work, row, work.end_shift);
     if (start <= 0 && end <= 0) continue;
-    const MeanForce mean = mean_felt_force(mechanism.model.contacts[c].felt, start, end, h);
+    const Felt& felt = mechanism.model.contacts[c].felt;
+    const MeanForce mean =
+        state.impulse[number] > 0
+            ? mean_felt_force(felt, start, end, h)
+            : mean_arrival_force(felt, std::min(start, -gap_at(mechanism, work, row, work.start_shift)), start, end, h);
     if (mean.force <= 0) continue;
     law = {h * mean.force, h * h * scheme.theta * mean.slope};
     const RowDirection direction = direction_of(mechanism, work, row);

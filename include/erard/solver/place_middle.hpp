@@ -51,6 +51,7 @@ inline void place_middle(const Mechanism& mechanism, const Scheme& scheme, const
   assemble_mass_matrix(mechanism, work.frames, work.contacts, work.mass_matrix);
   assemble_bias(mechanism, work.frames, work.contacts, work.middle_velocity, mechanism.model.gravity, work.bias);
   set_directions(mechanism, work);
+  for (int i = 0; i < mechanism.coordinate_count; ++i) work.start_shift[i] = state.x[i] - work.placed_position[i];
 }
 
 /// What the coordinates gain from where the frames were placed to the end of the step with the end velocity v.
@@ -60,12 +61,12 @@ inline void find_shift(const Mechanism& mechanism, const Scheme& scheme, const S
     shift[i] = state.x[i] + scheme.time_step * mean_rate(mechanism, scheme, state, i, v[i]) - work.placed_position[i];
 }
 
-/// Gap (felt, normal) or compression (stop) at the end of the step [m].
+/// Gap (felt, normal) or compression (stop) at the end of the step, or at its start [m].
 /// The gap is taken at the middle, where the lever arms are, and carried on with them: an error of second order in h
 /// that does not add up from step to step.
-/// @param shift  (n) of find_shift()
-inline double end_gap(const Mechanism& mechanism, const Workspace& work, const Row& row,
-                      const Coordinates& shift) noexcept {
+/// @param shift  (n) of find_shift(), or start_shift
+inline double gap_at(const Mechanism& mechanism, const Workspace& work, const Row& row,
+                     const Coordinates& shift) noexcept {
   const double placed = row.kind == RowKind::stop ? work.placed_position[mechanism.felt_coordinate[row.index]]
                                                   : work.contacts[row.index].gap;
   return placed + direction_of(mechanism, work, row).along(shift);

@@ -8,6 +8,7 @@ namespace erard {
 
 enum class StepStatus {
   converged,
+  refused,  // the motion is not as guessed, Scheme::surprise_limit: take shorter steps; the state is left as it was
   not_converged,  // an iteration limit was reached; the state is the best found and goes on
   not_finite,     // a number of the input or the result is not finite, or there is no finger to be driven; the state
                   // is left as it was
@@ -18,13 +19,17 @@ struct StepReport {
   int linearisations = 0;
   int sweeps = 0;            // of all linearisations
   double newton_change = 0;  // of the last linearisation, relative, energy norm [-]
+  double surprise = 0;       // change of the acceleration since the step before, rms of the masses [m/s^2]
   double sweep_error = 0;    // of the last sweeps: change or residual, relative [-]
   double finger_force = 0;   // mean over the step, positive when the finger presses [N]
 };
 
-/// First guess: the velocities change as they did in the step before; prescribed and clamped coordinates as they will be.
-inline void predict(const Mechanism& mechanism, const Drive& drive, const State& state, Workspace& work) noexcept {
+/// First guess: accelerations and forces are those of the step before; prescribed and clamped coordinates as they will
+/// be.
+inline void predict(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, const State& state,
+                    Workspace& work) noexcept {
   const Model& model = mechanism.model;
+  const double h = scheme.time_step;
   work.is_fixed.fill(false);
   for (int i = 0; i < model.body_count; ++i) work.is_fixed[i] = model.bodies[i].is_held;
   for (int c = 0; c < model.contact_count; ++c)
@@ -32,9 +37,9 @@ inline void predict(const Mechanism& mechanism, const Drive& drive, const State&
   if (drive.kind == DriveKind::key) work.is_fixed[model.finger.body] = true;
 
   for (int i = 0; i < mechanism.coordinate_count; ++i)
-    work.end_velocity[i] = work.is_fixed[i] ? 0.0 : state.v[i] + state.change[i];
+    work.end_velocity[i] = work.is_fixed[i] ? 0.0 : state.v[i] + h * state.acceleration[i];
   if (drive.kind == DriveKind::key) work.end_velocity[model.finger.body] = -drive.to.rate / model.finger.arm;
-  work.guess = state.impulse;
+  work.guess = h / state.time_step * state.impulse;
   work.is_in_play.fill(false);
 }
 
@@ -67,7 +72,7 @@ inline bool find_violations(const Mechanism& mechanism, Workspace& work) noexcep
   for (int k = 0; k < mechanism.rows.count; ++k) {
     const RowKind kind = mechanism.rows.row[k].kind;
     if (work.is_in_play[k] || (kind != RowKind::normal && kind != RowKind::stop)) continue;
-    work.is_in_play[k] = end_gap(mechanism, work, mechanism.rows.row[k], work.end_shift) < 0;
+    work.is_in_play[k] = gap_at(mechanism, work, mechanism.rows.row[k], work.end_shift) < 0;
     found = found || work.is_in_play[k];
   }
   return found;
@@ -92,6 +97,7 @@ inline void update_velocity(const Mechanism& mechanism, const Scheme& scheme, co
 /// How far the end velocity moved in a linearisation, and since the frames were placed.
 struct Movement {
   double last = 0;          // [-]
+  double acceleration = 0;  // the last, rms of the masses, by the step [m/s^2]
   double since_placed = 0;  // [-]
 };
 
@@ -109,7 +115,7 @@ inline Movement measure_movement(const Mechanism& mechanism, const Scheme& schem
     whole += mass * work.end_velocity[i] * work.end_velocity[i];
   }
   if (!(whole > 0)) return {};
-  return {std::sqrt(last / whole), std::sqrt(since_placed / whole)};
+  return {std::sqrt(last / whole), std::sqrt(last / mechanism.total_mass) / h, std::sqrt(since_placed / whole)};
 }
 
 /// Projects the penetration of contacts without felt away: smallest displacement in the metric of A.
@@ -121,7 +127,7 @@ inline void close_rigid_gaps(const Mechanism& mechanism, Workspace& work) noexce
     for (int j = 0; j < work.row_count; ++j) {
       const Row& row = mechanism.rows.row[work.row[j]];
       if (!is_rigid(mechanism, row)) continue;
-      const double gap = end_gap(mechanism, work, row, work.end_shift);
+      const double gap = gap_at(mechanism, work, row, work.end_shift);
       if (gap >= 0) continue;
       Coordinates way = work.half[j];
       solve_downwards(mechanism.elimination, work.factor, way.data());
@@ -174,7 +180,7 @@ inline void keep_felt_history(const Mechanism& mechanism, const Scheme& scheme, 
     double& compression = state.compression[row.index];
     const bool is_closed = work.guess[k] > 0;
     if (!is_closed && compression <= 0) continue;
-    const double overlap = -end_gap(mechanism, work, row, work.end_shift);
+    const double overlap = -gap_at(mechanism, work, row, work.end_shift);
     const Felt& felt = mechanism.model.contacts[row.index].felt;
     const double left = is_closed ? 0.0 : relaxed_compression(felt, compression, scheme.time_step);
     compression = std::max({overlap, left, 0.0});
@@ -202,12 +208,13 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
   if (mechanism.has_rigid_contacts) close_rigid_gaps(mechanism, work);
   for (int i = 0; i < mechanism.coordinate_count; ++i) {
     state.x[i] = work.placed_position[i] + work.end_shift[i];
-    state.change[i] = work.end_velocity[i] - state.v[i];
+    state.acceleration[i] = (work.end_velocity[i] - state.v[i]) / scheme.time_step;
     state.v[i] = work.end_velocity[i];
   }
   if (drive.kind == DriveKind::key)
     state.x[finger.body] = mechanism.model.bodies[finger.body].initial - drive.to.value / finger.arm;
   state.impulse = work.guess;
+  state.time_step = scheme.time_step;
   state.time += scheme.time_step;
 }
 
@@ -215,7 +222,7 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
 ///   M(x) dv = (Q(q,v,t) - N(q,v) v) dt + H(q) dr,   laws of the rows                          thesis (5.30)-(5.39)
 /// Newton on the smooth terms outside (felts: one linearisation at d = 0 would see no stiffness), one-step non-smooth
 /// problem inside. Bounded: newton_limit x sweep_limit sweeps.
-/// @param state in: start, out: end of the step; left alone when the report says not_finite
+/// @param state in: start, out: end of the step; left alone when the report says not_finite or refused
 /// No heap, no exceptions; nothing in `work` is read before it is written.
 inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, State& state,
                        Workspace& work) noexcept {
@@ -225,7 +232,7 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     report.status = StepStatus::not_finite;
     return report;
   }
-  predict(mechanism, drive, state, work);
+  predict(mechanism, scheme, drive, state, work);
   place_middle(mechanism, scheme, state, work);
   bool is_done = false;
   SweepReport swept;
@@ -245,6 +252,12 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     report.sweeps += swept.sweeps;
     report.sweep_error = swept.error;
     report.newton_change = moved.last;
+    if (report.linearisations > 1) continue;
+    report.surprise = moved.acceleration;
+    if (report.surprise > scheme.surprise_limit) {
+      report.status = StepStatus::refused;
+      return report;
+    }
   }
   if (!is_done || !swept.is_converged) report.status = StepStatus::not_converged;
   accept(mechanism, scheme, drive, state, work, report);

@@ -25,6 +25,7 @@ struct Workspace {
   // mechanics where the frames were placed: at the middle of an iterate
   Coordinates placed_velocity;  // end velocity of that iterate
   Coordinates placed_position;
+  Coordinates start_shift;  // x_n less that position
   Frames frames;
   ContactFrames contacts;
   CoordinateMatrix mass_matrix;                        // M (n x n)
