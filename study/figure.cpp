@@ -22,6 +22,8 @@ std::string quoted(const std::string& text) {
 void add_axis(std::string& script, const char* name, const Axis& axis) {
   script += fmt::format("set {}label {}\n", name, quoted(axis.label));
   script += fmt::format("{} logscale {}\n", axis.is_logarithmic ? "set" : "unset", name);
+  const bool has_small_decades = axis.is_logarithmic && axis.range.first > 0 && axis.range.first < 1e-3;
+  script += fmt::format("set format {} '{}'\n", name, has_small_decades ? "10^{%T}" : "% h");
   if (axis.range.first == axis.range.second)
     script += fmt::format("set {}range [*:*]\n", name);
   else
