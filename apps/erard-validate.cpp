@@ -12,6 +12,7 @@
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
 #include "erard/version.hpp"
+#include "study/pendulum.hpp"
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
 
@@ -29,6 +30,7 @@ struct Study {
 /// In the order of the document.
 const std::vector<Study> kStudies{
     {"simple_models", study::simple_models_section},  // 2
+    {"pendulum", study::pendulum_section},
 };
 
 constexpr const char* kPreamble =
