@@ -27,7 +27,8 @@ struct HalfSwing {
 class ExactPendulum {
  public:
   /// @param upsilon  Y = 2 pi sqrt(c_d / (m g l)), thesis (5.7) [-]
-  /// @param start    |angle| < pi; at rest or clearly thrown (the quadrature of a hardly moving start is poor), and too slow to go over the top: throws std::invalid_argument otherwise
+  /// @param start    |angle| < pi, and too slow to go over the top: throws std::invalid_argument otherwise.
+  ///                 At rest or clearly thrown: the quadrature of a start that hardly moves is poor.
   ExactPendulum(double upsilon, PendulumState start);
 
   const std::vector<HalfSwing>& swings() const { return swings_; }
