@@ -44,7 +44,7 @@ double final_angle(const PendulumScheme& scheme, const PendulumCase& c);
 double explicit_spectral_radius(const PendulumCase& c);
 
 /// Amplitude above which explicit Euler gains more in a sliding half swing than dry friction takes from it [rad]
-///   a (exp(pi^2 / Theta) - 1) = 2 Y^2 / (4 pi^2)        small angles; half a period grows by (1 + 4 pi^2/Theta^2)^(Theta/4)
+///   a (exp(pi^2 / Theta) - 1) = 2 Y^2 / (4 pi^2)   small angles; half a period grows by (1 + 4 pi^2/Theta^2)^(Theta/4)
 double explicit_growth_threshold(const PendulumCase& c);
 
 /// Computing time of one step [s]: the shortest of several runs of five periods, less what goes before the first step.
