@@ -15,6 +15,7 @@
 #include "study/pendulum.hpp"
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
+#include "study/thesis_tables.hpp"
 
 namespace {
 
@@ -32,6 +33,7 @@ const std::vector<Study> kStudies{
     {"simple_models", study::simple_models_section},  // 2
     {"pendulum", study::pendulum_section},
 };
+const std::vector<Study> kStudies{{"thesis_tables", study::thesis_tables_section}};
 
 constexpr const char* kPreamble =
     "# The thesis, reproduced\n"
