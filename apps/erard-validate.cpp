@@ -13,6 +13,7 @@
 #include "erard/device/output_file.hpp"
 #include "erard/version.hpp"
 #include "study/pendulum.hpp"
+#include "study/published_figures.hpp"
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
 #include "study/thesis_tables.hpp"
@@ -34,6 +35,8 @@ const std::vector<Study> kStudies{
     {"pendulum", study::pendulum_section},
 };
 const std::vector<Study> kStudies{{"thesis_tables", study::thesis_tables_section}};
+const std::vector<Study> kStudies{{"thesis_tables", study::thesis_tables_section},
+                                  {"published_figures", study::published_figures_section}};
 
 constexpr const char* kPreamble =
     "# The thesis, reproduced\n"

@@ -19,11 +19,21 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+/// Labels at 1, 2, 5 of each decade of a range of less than three, where gnuplot's own would be too few.
+std::string one_two_five(const std::pair<double, double>& range) {
+  if (range.first <= 0 || range.second >= 1e3 * range.first) return "autofreq";
+  std::string labels;
+  for (double decade = std::pow(10, std::floor(std::log10(range.first))); decade <= range.second; decade *= 10)
+    for (const double part : {1., 2., 5.}) labels += fmt::format("{}{:g}", labels.empty() ? "(" : ",", part * decade);
+  return labels + ")";
+}
+
 void add_axis(std::string& script, const char* name, const Axis& axis) {
   script += fmt::format("set {}label {}\n", name, quoted(axis.label));
   script += fmt::format("{} logscale {}\n", axis.is_logarithmic ? "set" : "unset", name);
   const bool has_small_decades = axis.is_logarithmic && axis.range.first > 0 && axis.range.first < 1e-3;
   script += fmt::format("set format {} '{}'\n", name, has_small_decades ? "10^{%T}" : "% h");
+  script += fmt::format("set {}tics {}\n", name, axis.is_logarithmic ? one_two_five(axis.range) : "autofreq");
   if (axis.range.first == axis.range.second)
     script += fmt::format("set {}range [*:*]\n", name);
   else

@@ -29,8 +29,8 @@ double ringing_mass(double stiffness, double frequency) noexcept;
 inline constexpr double kKeyMassAtRail = 0.062;  // m_eq without the player, thesis 6.4.1 [kg]
 
 /// Mean interval of the maxima of a force that oscillates, as a frequency.
-/// A maximum counts when the force, averaged over three samples, falls by `prominence` [N] on both sides of it; its time is
-/// that of the parabola through three of these. The average takes out kinks of a millisecond that contacts leave.
+/// A maximum counts when the force, averaged over three samples, falls by `prominence` [N] on both sides of it; its
+/// time is that of the parabola through three of these. The average takes out kinks of a millisecond that contacts leave.
 struct Oscillation {
   double frequency = 0;        // [Hz]; 0 with fewer than two maxima
   std::vector<double> maxima;  // times [s]
@@ -48,8 +48,8 @@ struct StrokeOscillation {
 };
 StrokeOscillation stroke_oscillation(const std::string& keystroke, double release);
 
-/// The key held on the rail by a steady force, the hammer free of the backcheck, a mass riding on it at the finger, and the
-/// force raised by a tenth: how the reaction of the rail rings.
+/// The key held on the rail by a steady force, the hammer free of the backcheck, a mass riding on it at the finger, and
+/// the force raised by a tenth: how the reaction of the rail rings.
 struct HeldKey {
   double mass = 0;       // of the player, at the finger [kg]
   double rail = 0;       // reaction of the rail after the rise [N]

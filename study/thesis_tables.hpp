@@ -54,7 +54,7 @@ KinematicRatios kinematic_ratios(const ActionFile& action);
 /// @param dry c_d [N m]; @param weight_moment m g l [N m]
 double upsilon(double dry, double weight_moment) noexcept;
 
-/// The six bodies from the parameters of the action; m g l of the whippen with jack and lever on it, as they are when it
+/// The six bodies from the parameters of the action; m g l of the whippen with jack and lever on it, as when it
 /// moves. The frictions of whippen, hammer and damper were derived from this table: only the key is a test of it.
 std::array<Recomputed, 6> table_5_2(const ActionFile& action);
 

@@ -159,38 +159,41 @@ void draw_rail(const Pictures& pictures, const std::vector<RailRow>& rows) {
 }
 
 constexpr const char* kTablesText = R"(
-The frictions of whippen, hammer and damper in `config/grand_action.yaml` were derived from Table 5.2, so only the key
-tests it: its c_d would have to be 0.0048 N m, or its centre of gravity 47 mm from its pivot. The forces of Table 4.1
-are not the balance of 10 N at the finger through the lever arms of Table 2.1, which is {:.0f} N at the whippen and
-{:.0f} N at the knuckle; jack and hammer are there with 30 N.
+The frictions of whippen, hammer and damper in `config/grand_action.yaml` were derived from Table 5.2, so only the
+key tests it: its c_d would have to be 0.0048 N m, or its centre of gravity 47 mm from its pivot. The forces of
+Table 4.1 are not the balance of 10 N at the finger through the lever arms of Table 2.1, which is {:.0f} N at the
+whippen and {:.0f} N at the knuckle; jack and hammer are there with 30 N.
 
-(4.11) speaks of 1 mm in 0.1 s, for which the felt would have to be pressed with 127 N. Where the key meets the front
-rail, the punching gives {:.2f} mm in piano and {:.2f} mm in forte, and stores {:.0f} and {:.0f} times what it loses until
-then. So the viscous part is as little negligible as the thesis says, although the number it gives for that is wrong.
+(4.11) speaks of 1 mm in 0.1 s, for which the felt would have to be pressed with 127 N. Where the key meets the
+front rail, the punching gives {:.2f} mm in piano and {:.2f} mm in forte, and stores {:.0f} and {:.0f} times what it
+loses until then. So the viscous part is as little negligible as the thesis says, although the number it gives for
+that is wrong.
 )";
 
 constexpr const char* kTouchText = R"(
-Piston at 6 mm/s to Y = 7.8 mm and back, no damper, mean force over y = 1.5 to 7 mm. "By the formula" is the balance of
-moments of Tables 2.1, 4.12 and 5.2, in which neither geometry nor solver has a part; the two agree within {:.3f} N. The
-spring of the whippen takes {:.2f} N off both weights, which (2.7) leaves out; without it the mean is {:.2f} N (thesis:
-0.54 N). The frictions of Tables 2.1 and 5.2 make {:.2f} N each way where 0.16 N are needed. Of the two springs that the
-thesis prints for the whippen, that of Table 2.1 leads further away. The action keeps the printed numbers.
+Piston at 6 mm/s to Y = 7.8 mm and back, no damper, mean force over y = 1.5 to 7 mm. "By the formula" is the balance
+of moments of Tables 2.1, 4.12 and 5.2, in which neither geometry nor solver has a part; the two agree within {:.3f}
+N. The spring of the whippen takes {:.2f} N off both weights, which (2.7) leaves out; without it the mean is {:.2f}
+N (thesis: 0.54 N). The frictions of Tables 2.1 and 5.2 make {:.2f} N each way where 0.16 N are needed. Of the two
+springs that the thesis prints for the whippen, that of Table 2.1 leads further away. The action keeps the printed
+numbers.
 )";
 
 constexpr const char* kRailText = R"(
-"This action": mean interval of the maxima of the finger force between check and release that stand out by 2 % of the
-force held. The keystrokes carry a finger of 15 g (piano) and 10 g (forte), and the backcheck bears part of the force
-as a second spring. (6.2) with m_eq = 62 g has no player in it. {:.0f} g on the key at the finger would bring it down to
-the measured 70 Hz, {:.0f} g to 90 Hz: about ten times the finger of these keystrokes. The engine agrees: held by a steady 3.5
-or 9 N with such a mass, and given another tenth, the key rings at {:.0f} and {:.0f} Hz. That is not exactly (6.2) because
-under 3.5 N the rail bears only {:.1f} N, whippen and let-off the rest, and because those ring along.
+"This action": mean interval of the maxima of the finger force between check and release that stand out by 2 % of
+the force held. The keystrokes carry a finger of 15 g (piano) and 10 g (forte), and the backcheck bears part of the
+force as a second spring. (6.2) with m_eq = 62 g has no player in it. {:.0f} g on the key at the finger would bring
+it down to the measured 70 Hz, {:.0f} g to 90 Hz: about ten times the finger of these keystrokes. The engine agrees:
+held by a steady 3.5 or 9 N with such a mass, and given another tenth, the key rings at {:.0f} and {:.0f} Hz. That
+is not exactly (6.2) because under 3.5 N the rail bears only {:.1f} N, whippen and let-off the rest, and because
+those ring along.
 )";
 
 constexpr const char* kOpening =
-    R"(Of {} printed numbers recomputed here {} are met within 2 %; of the other {}, {} are rounding to one digit. On the
-thesis's other numbers the key sinks under {:.2f} N and rises under {:.2f} N, not 0.70 and 0.38 N: those contradict each
-other. On the front rail the action rings at {:.0f} (piano) and {:.0f} Hz (forte), where 70 and 90 Hz were measured: a
-player's mass of {:.0f} to {:.0f} g at the finger accounts for that.
+    R"(Of {} printed numbers recomputed here {} are met within 2 %; of the other {}, {} are rounding to one digit. On
+the thesis's other numbers the key sinks under {:.2f} N and rises under {:.2f} N, not 0.70 and 0.38 N: those contradict
+each other. On the front rail the action rings at {:.0f} (piano) and {:.0f} Hz (forte), where 70 and 90 Hz were
+measured: a player's mass of {:.0f} to {:.0f} g at the finger accounts for that.
 
 ![Force on the finger in a press of 6 mm/s]({link}/touch_weight.svg)
 

@@ -183,7 +183,7 @@ TEST(FrontRail, HeavierPlayersRingSlower) {
 // ---- touch weight
 
 TEST(TouchWeight, FormulaIsTheBalanceOfMoments) {
-  // by hand: C_w 0.140975, spring 2.15 . 0.0355 (0.419 - 0.0073) = 0.03142; c_d 0.012 + 2.15 . 0.001023 + 10.1 . 0.000951
+  // by hand: C_w 0.140975, spring 2.15 . 0.0355 (0.419 - 0.0073) = 0.03142; c_d 0.012 + 2.15 . 0.001023 + 10.1 . 0.00095
   const TouchWeight touch = static_touch_weight({});
   EXPECT_NEAR(touch.mean(), (0.140975 - 0.03142) / 0.245, 1e-4);
   EXPECT_NEAR(touch.friction(), (0.012 + 0.002199 + 0.009603) / 0.245, 1e-4);
