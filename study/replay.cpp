@@ -1,0 +1,57 @@
+#include "study/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "erard/device/config_dir.hpp"
+
+namespace erard::study {
+
+const Event* PlayedStroke::find(EventKind kind) const {
+  for (const Event& event : result.events)
+    if (event.kind == kind) return &event;
+  return nullptr;
+}
+
+const Event& PlayedStroke::event(EventKind kind) const {
+  const Event* found = find(kind);
+  if (found == nullptr) throw std::runtime_error(fmt::format("a stroke without the event {}", name_of(kind)));
+  return *found;
+}
+
+const Snapshot& PlayedStroke::at(double time) const {
+  const long nearest = std::lround((time - row.front().time) * kReplayRate);
+  return row[static_cast<std::size_t>(std::clamp(nearest, 0L, static_cast<long>(row.size()) - 1))];
+}
+
+PlayedStroke play(const ActionFile& action, const Keystroke& keystroke, DriveKind drive, double end) {
+  PlayedStroke stroke;
+  RunSettings settings;
+  settings.tick.drive = drive;
+  settings.tick.set_rate(kReplayRate);
+  settings.start = keystroke.start();
+  settings.duration = end - keystroke.start();
+  settings.on_row = [&stroke](const Snapshot& row) { stroke.row.push_back(row); };
+  stroke.result = run(action, keystroke, settings);
+  return stroke;
+}
+
+Keystroke force_of(const PlayedStroke& stroke) {
+  std::vector<double> time, force;
+  for (const Snapshot& row : stroke.row) {
+    time.push_back(row.time);
+    force.push_back(row.force);
+  }
+  return {KeystrokeQuantity::force, time, force};
+}
+
+ActionFile default_action(const ActionOptions& options) {
+  return load_action(config_dir() / "grand_action.yaml", options);
+}
+
+Keystroke default_keystroke(const std::string& name) {
+  return read_keystroke(config_dir() / "keystrokes" / (name + ".csv"));
+}
+
+}  // namespace erard::study
