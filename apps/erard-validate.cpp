@@ -17,6 +17,7 @@
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
 #include "study/thesis_tables.hpp"
+#include "study/without_felts.hpp"
 
 namespace {
 
@@ -31,12 +32,11 @@ struct Study {
 
 /// In the order of the document.
 const std::vector<Study> kStudies{
-    {"simple_models", study::simple_models_section},  // 2
     {"pendulum", study::pendulum_section},
+    {"simple_models", study::simple_models_section},
+    {"thesis_tables", study::thesis_tables_section},
+    {"without_felts", study::without_felts_section},
 };
-const std::vector<Study> kStudies{{"thesis_tables", study::thesis_tables_section}};
-const std::vector<Study> kStudies{{"thesis_tables", study::thesis_tables_section},
-                                  {"published_figures", study::published_figures_section}};
 
 constexpr const char* kPreamble =
     "# The thesis, reproduced\n"
