@@ -16,6 +16,7 @@
 #include "study/published_figures.hpp"
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
+#include "study/strokes.hpp"
 #include "study/thesis_tables.hpp"
 #include "study/without_felts.hpp"
 
@@ -32,10 +33,9 @@ struct Study {
 
 /// In the order of the document.
 const std::vector<Study> kStudies{
-    {"pendulum", study::pendulum_section},
-    {"simple_models", study::simple_models_section},
-    {"thesis_tables", study::thesis_tables_section},
-    {"without_felts", study::without_felts_section},
+    {"pendulum", study::pendulum_section},           {"simple_models", study::simple_models_section},
+    {"thesis_tables", study::thesis_tables_section}, {"strokes", study::strokes_section},
+    {"without_felts", study::without_felts_section}, {"published_figures", study::published_figures_section},
 };
 
 constexpr const char* kPreamble =

@@ -46,6 +46,13 @@ Keystroke force_of(const PlayedStroke& stroke) {
   return {KeystrokeQuantity::force, time, force};
 }
 
+const Snapshot& hardest_push(const PlayedStroke& stroke) {
+  const double end = stroke.event(EventKind::jack_meets_let_off).time;
+  const auto last = std::find_if(stroke.row.begin(), stroke.row.end(), [&](const Snapshot& r) { return r.time > end; });
+  return *std::max_element(stroke.row.begin(), last,
+                           [](const Snapshot& a, const Snapshot& b) { return a.force < b.force; });
+}
+
 ActionFile default_action(const ActionOptions& options) {
   return load_action(config_dir() / "grand_action.yaml", options);
 }

@@ -31,6 +31,9 @@ PlayedStroke play(const ActionFile& action, const Keystroke& keystroke, DriveKin
 /// The finger's force as a keystroke: driven by it, the same action must move as it did.
 Keystroke force_of(const PlayedStroke& stroke);
 
+/// The row with the largest force before the jack meets the let-off button.
+const Snapshot& hardest_push(const PlayedStroke& stroke);
+
 /// The grand action and a keystroke (its name in config/keystrokes) that come with the project.
 ActionFile default_action(const ActionOptions& options = {});
 Keystroke default_keystroke(const std::string& name);

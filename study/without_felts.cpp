@@ -17,14 +17,6 @@ double gap(const Model& model, const Snapshot& row, const char* contact) {
   return -row.compression[static_cast<std::size_t>(find_contact(model, contact))];
 }
 
-/// The row with the largest force before the let-off button is met.
-const Snapshot& hardest_push(const PlayedStroke& stroke) {
-  const double end = stroke.event(EventKind::jack_meets_let_off).time;
-  const auto last = std::find_if(stroke.row.begin(), stroke.row.end(), [&](const Snapshot& r) { return r.time > end; });
-  return *std::max_element(stroke.row.begin(), last,
-                           [](const Snapshot& a, const Snapshot& b) { return a.force < b.force; });
-}
-
 std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 std::string millimetres(double length, int digits = 2) {
   return fmt::format("{:.{}f}", std::abs(length) < 5e-8 ? 0.0 : 1e3 * length, digits);
