@@ -29,7 +29,7 @@ PlayedStroke play(const ActionFile& action, const Keystroke& keystroke, DriveKin
   PlayedStroke stroke;
   RunSettings settings;
   settings.tick.drive = drive;
-  settings.tick.set_rate(kReplayRate);
+  settings.tick.set_rate(kReplayRate, 1);
   settings.start = keystroke.start();
   settings.duration = end - keystroke.start();
   settings.on_row = [&stroke](const Snapshot& row) { stroke.row.push_back(row); };

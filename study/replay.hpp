@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "erard/device/simulation.hpp"
+#include "study/study_step.hpp"
 
 namespace erard::study {
 
 /// Output rate of these strokes [Hz]: a row after every internal step of the default length, so that the force which is
 /// replayed is the one that acted there.
-inline constexpr double kReplayRate = 1 / kDefaultStep;
+inline constexpr double kReplayRate = 1 / kStudyStep;
 
 /// A run with all its rows.
 struct PlayedStroke {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "study/sampled_stroke.hpp"
+#include "study/study_step.hpp"
 
 namespace erard::study {
 namespace {
@@ -69,7 +70,7 @@ TracedStroke trace_stroke(const ActionFile& action, const Keystroke& keystroke, 
   const auto hammer = static_cast<std::size_t>(action.roles.hammer), key = static_cast<std::size_t>(model.finger.body);
   TracedStroke stroke;
   RunSettings settings;
-  settings.tick = tick_at(drive, 1 / kDefaultStep, 1);
+  settings.tick = tick_at(drive, 1 / kStudyStep, 1);
   settings.start = keystroke.start();
   settings.duration = keystroke.end() - keystroke.start();
   settings.on_row = [&](const Snapshot& row) {

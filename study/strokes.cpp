@@ -23,7 +23,7 @@ std::vector<double> maxima_of(const PlayedStroke& stroke, double from, double un
     const double beyond = (is_rising ? 1 : -1) * (row->key_position - turn->key_position);
     if (beyond > 0) turn = row;
     if (beyond > -least) continue;
-    if (is_rising && turn->time > from + 0.5 * kDefaultStep) times.push_back(turn->time);  // not where it begins
+    if (is_rising && turn->time > from + 0.5 * kStudyStep) times.push_back(turn->time);  // not where it begins
     is_rising = !is_rising;
     turn = row;
   }

@@ -240,7 +240,7 @@ double end_of_overlap(const PlayedStroke& stroke) {
   double end = stroke.row.front().time;
   for (const Snapshot& row : stroke.row)
     if (row.time <= kSettled && *std::max_element(row.compression.begin(), row.compression.end()) > kNothing)
-      end = row.time + kDefaultStep;
+      end = row.time + kStudyStep;
   return end;
 }
 

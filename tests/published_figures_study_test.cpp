@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "erard/device/config_dir.hpp"
+#include "study/study_step.hpp"
 #include "study/published_figures.hpp"
 #include "study/repetition_limit.hpp"
 #include "study/sampled_stroke.hpp"
@@ -213,10 +214,10 @@ TEST(Strokes, HammerEscapesWhereItDoesInTheIndependentSimulation) {
     const TracedStroke stroke = trace_stroke(action(), keystroke, DriveKind::piston);
     const StrokeTimes times = time_stroke(stroke.trace, stroke.events);
     // one internal step of 0.125 ms at the hammer's 1 and 1.5 m/s
-    EXPECT_NEAR(times.free_way, way, times.string_speed * kDefaultStep) << name;
+    EXPECT_NEAR(times.free_way, way, times.string_speed * kStudyStep) << name;
     EXPECT_NEAR(
         times.string_speed,
-        stroke.trace.hammer_speed[static_cast<std::size_t>(std::lround(times.hammer_string / kDefaultStep)) - 1], 1e-9);
+        stroke.trace.hammer_speed[static_cast<std::size_t>(std::lround(times.hammer_string / kStudyStep)) - 1], 1e-9);
   }
 }
 

@@ -77,9 +77,9 @@ TEST(Replay, ForceGivesTheMotionBack) {
     double speed = 0;
     const auto& row = s->by_position.row;
     for (std::size_t i = 1; i < row.size(); ++i)
-      speed = std::max(speed, (row[i].key_position - row[i - 1].key_position) / kDefaultStep);
+      speed = std::max(speed, (row[i].key_position - row[i - 1].key_position) / kStudyStep);
     const double check = time_of(*s, EventKind::hammer_checked);
-    EXPECT_LT(largest_difference(s->by_position, s->by_force, check, key_position), 0.1 * speed * kDefaultStep);
+    EXPECT_LT(largest_difference(s->by_position, s->by_force, check, key_position), 0.1 * speed * kStudyStep);
     // the wedge of the caught hammer may settle elsewhere; still less than the lasers of thesis 3.1 resolve
     EXPECT_LT(largest_difference(s->by_position, s->by_force, s->stroke.release, key_position), 50e-6);
   }
@@ -88,7 +88,7 @@ TEST(Replay, ForceGivesTheMotionBack) {
 TEST(Replay, ForceLateByOneStepDoesNot) {
   const Keystroke force = force_of(forte().by_position);
   std::vector<double> times(force.times().begin(), force.times().end());
-  for (double& time : times) time += kDefaultStep;
+  for (double& time : times) time += kStudyStep;
   const Keystroke late(KeystrokeQuantity::force, times, {force.values().begin(), force.values().end()});
   PlayedStroke shifted = play(default_action(), late, DriveKind::force, 0.08);
   // it starts one step later, at rest: put its rows at the times of the others
@@ -125,7 +125,7 @@ TEST(RigidString, NothingPassesThroughIt) {
 TEST(RigidString, ForceBeforeTheBlowDoesNotKnowTheString) {
   for (const DrivenStroke* s : {&piano(), &forte()}) {
     const PlayedStroke inelastic = play_with_string(s->stroke, 0);
-    const double before = time_of(*s, EventKind::hammer_meets_string) - 2 * kDefaultStep;
+    const double before = time_of(*s, EventKind::hammer_meets_string) - 2 * kStudyStep;
     // the same total mass; the felt's 12.8 mg of 12.5 g hang free on the head instead of being part of it
     EXPECT_LT(relative_error(s->by_position, inelastic, before, finger_force), 1e-3) << s->stroke.name;
   }
