@@ -1,38 +1,11 @@
 // What the real-time path promises: no heap, nothing read that was not written, bounded work, faults that leave the state.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
+#include "support/heap_calls.hpp"
 #include "support/strokes.hpp"
-
-namespace {
-std::atomic<long> heap_calls{0};
-}
-
-#if defined(__SANITIZE_ADDRESS__) || (defined(__has_feature) && __has_feature(address_sanitizer))
-extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
-                                                         void (*)(const volatile void*));
-namespace {
-const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t) { ++heap_calls; },
-                                                                [](const volatile void*) { ++heap_calls; });
-}
-#else
-// glibc's own allocator under its second name: every malloc of the process passes here, operator new and Eigen included
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* block, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-void* malloc(std::size_t size) { return ++heap_calls, __libc_malloc(size); }
-void* calloc(std::size_t count, std::size_t size) { return ++heap_calls, __libc_calloc(count, size); }
-void* realloc(void* block, std::size_t size) { return ++heap_calls, __libc_realloc(block, size); }
-void* memalign(std::size_t alignment, std::size_t size) { return ++heap_calls, __libc_memalign(alignment, size); }
-void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
-}
-#endif
 
 namespace erard {
 namespace {

@@ -41,4 +41,5 @@
 // haptics: what the finger moves and feels
 #include "erard/haptics/finger.hpp"
 #include "erard/haptics/tick.hpp"
+#include "erard/haptics/velocity.hpp"
 #include "erard/haptics/events.hpp"
