@@ -171,7 +171,7 @@ struct Press {
 Recording sense(const Press& press, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> noise;
-  Recording recording{2000, {}, {}};
+  Recording recording{2000, {}, {}, {}};
   for (int i = 0; i * 0.0005 < press.end(); ++i) {
     const double position = press.position(i * 0.0005);
     const double reading = position + sensor_noise(position) * noise(generator);
@@ -304,11 +304,26 @@ TEST_F(RecordingFile, IsRefusedWithItsPlace) {
   expect_refused("key_front_mm\n", 1, {"no column t_s"});
   expect_refused(header + "0,0,0\n0.0005,nan,0\n", 3, {"key_front_mm = \"nan\"", "must be a finite number"});
   expect_refused(header + "0,0,0\n0.0005,31,0\n", 3, {"key_front_mm = 31 mm", "must be within +-30 mm"});
+  expect_refused(header + "0,0,0\n0.0005,0,31\n", 3, {"hammer_sensor_mm = 31 mm", "must be within +-30 mm"});
   expect_refused(header + "0,0,0\n0.0005,0\n", 3, {"fewer values"});
   expect_refused(header + "0,0,0\n0,0,0\n", 3, {"t_s = 0 s after 0 s", "must rise by"});
   expect_refused(header + "0,0,0\n0.5,0,0\n", 3, {"t_s = 0.5 s", "400 to 50000 Hz"});
   expect_refused(header + "0,0,0\n0.0005,0,0\n0.0015,0,0\n", 4, {"t_s = 0.0015 s", "must rise by 0.0005 s"});
   expect_refused(header + "0,0,0\n0.0005,0,0\n", 3, {"2 rows of data", "must have 20 or more"});
+}
+
+TEST_F(RecordingFile, GivesTheHammerWhereItWasRecorded) {
+  std::string with = "t_s,key_front_mm,hammer_sensor_mm\n", without = "t_s,key_front_mm\n";
+  for (int i = 0; i < 20; ++i) {
+    const std::string row = std::to_string(i * 0.0005) + "," + std::to_string(0.5 * i);
+    with += row + "," + std::to_string(0.125 * i) + "\n";
+    without += row + "\n";
+  }
+  const Recording both = read_recording(file(with)), key = read_recording(file(without));
+  ASSERT_EQ(both.hammer.size(), 20U);
+  EXPECT_DOUBLE_EQ(both.hammer[19], 0.125e-3 * 19);
+  EXPECT_TRUE(key.hammer.empty());
+  EXPECT_TRUE(both.key_front == key.key_front);
 }
 
 TEST_F(RecordingFile, CannotBeImportedWithoutRestAndMovement) {

@@ -236,7 +236,7 @@ std::vector<double> choose_penalties(const std::vector<double>& pilot, double ra
 // ---- checks
 
 using RecordingTable = csv::Table<3>;
-constexpr std::size_t kTime = 0, kKeyFront = 1;
+constexpr std::size_t kTime = 0, kKeyFront = 1, kHammer = 2;
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kLowestRate = 400, kHighestRate = 50e3;  // [Hz] slower hides strikes, faster is no key sensor
@@ -244,11 +244,15 @@ constexpr double kJitter = 0.05;                          // of an interval: wha
 constexpr double kLongestReading = 0.03;                  // [m] three times the dip of a key
 constexpr std::size_t kFewestSamples = 20;                // twice the nine of peak_speed()
 
+void check_reading(RecordingTable& table, const char* column, double reading) {
+  if (std::abs(reading) > kLongestReading)
+    table.reject_row(fmt::format("{} = {} mm, must be within +-{} mm", column, reading / kMillimetre,
+                                 kLongestReading / kMillimetre));
+}
+
 void check_row(RecordingTable& table, const Recording& recording, double time, double reading) {
   const std::vector<double>& times = recording.times;
-  if (std::abs(reading) > kLongestReading)
-    table.reject_row(fmt::format("key_front_mm = {} mm, must be within +-{} mm", reading / kMillimetre,
-                                 kLongestReading / kMillimetre));
+  check_reading(table, "key_front_mm", reading);
   if (times.empty()) return;
 
   const double interval = time - times.back();
@@ -346,6 +350,9 @@ Recording read_recording(const fs::path& file) {
     check_row(table, recording, row[kTime], reading);
     recording.times.push_back(row[kTime]);
     recording.key_front.push_back(reading);
+    if (!table.has(kHammer)) continue;
+    check_reading(table, "hammer_sensor_mm", row[kHammer] * kMillimetre);
+    recording.hammer.push_back(row[kHammer] * kMillimetre);
   }
   const std::size_t count = recording.times.size();
   if (count < kFewestSamples)

@@ -10,11 +10,12 @@
 
 namespace erard {
 
-/// Position of a key front, uniformly sampled, in the sensor's own scale.
+/// Position of a key front and of its hammer, uniformly sampled, in the sensors' own scales.
 struct Recording {
   double rate = 0;                // samples per second [Hz]
   std::vector<double> times;      // [s]
   std::vector<double> key_front;  // [m] down positive, 0 to the reading at which the sensor clips
+  std::vector<double> hammer;     // [m] shank near its flange, up positive; empty if not recorded
 };
 
 /// What a conversion may choose. Lengths are in the scale of the recording, except the dip.
@@ -48,7 +49,7 @@ struct Import {
   ImportFigures figures;
 };
 
-/// Reads a CSV file with the columns `t_s`, `key_front_mm` and, if present, `hammer_sensor_mm`, which is not used.
+/// Reads a CSV file with the columns `t_s`, `key_front_mm` and, if present, `hammer_sensor_mm`.
 /// Throws InputError when the file is not like that, when its samples are not uniform, and when a value is not finite.
 Recording read_recording(const std::filesystem::path& file);
 
