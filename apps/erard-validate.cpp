@@ -14,6 +14,7 @@
 #include "erard/version.hpp"
 #include "study/pendulum.hpp"
 #include "study/published_figures.hpp"
+#include "study/recordings.hpp"
 #include "study/section.hpp"
 #include "study/simple_models.hpp"
 #include "study/strokes.hpp"
@@ -33,9 +34,13 @@ struct Study {
 
 /// In the order of the document.
 const std::vector<Study> kStudies{
-    {"pendulum", study::pendulum_section},           {"simple_models", study::simple_models_section},
-    {"thesis_tables", study::thesis_tables_section}, {"strokes", study::strokes_section},
-    {"without_felts", study::without_felts_section}, {"published_figures", study::published_figures_section},
+    {"pendulum", study::pendulum_section},
+    {"simple_models", study::simple_models_section},
+    {"thesis_tables", study::thesis_tables_section},
+    {"strokes", study::strokes_section},
+    {"without_felts", study::without_felts_section},
+    {"recordings", study::recordings_section},
+    {"published_figures", study::published_figures_section},
 };
 
 constexpr const char* kPreamble =
