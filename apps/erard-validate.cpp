@@ -12,6 +12,7 @@
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
 #include "erard/version.hpp"
+#include "study/causal_input.hpp"
 #include "study/pendulum.hpp"
 #include "study/published_figures.hpp"
 #include "study/recordings.hpp"
@@ -40,6 +41,7 @@ const std::vector<Study> kStudies{
     {"strokes", study::strokes_section},
     {"without_felts", study::without_felts_section},
     {"recordings", study::recordings_section},
+    {"causal_input", study::causal_input_section},
     {"published_figures", study::published_figures_section},
 };
 

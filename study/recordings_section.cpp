@@ -111,8 +111,7 @@ Panel slow_panel(const SlowPress& press) {
   return {title_of(kSlowRecording) + ": hammer over key",
           {"key, part of the way [-]"},
           {"hammer, part of the way [-]"},
-          {{"recorded", press.key, press.recorded, "points pt 7 ps 0.4 lc rgb '#b05010'"},
-           {"model", press.key, press.predicted, "points pt 7 ps 0.4 lc rgb '#1050a0'"}},
+          {{"recorded", press.key, press.recorded, kRecordedLine}, {"model", press.key, press.predicted, kModelLine}},
           "bottom right"};
 }
 
