@@ -114,7 +114,8 @@ TEST(RecordedStrikes, AreReadAsTheyWereWhenTheRecordingsWereSelected) {
     const char* name;
     double delay, speed;
   };
-  constexpr double kRest = (0.5 + 4 * 0.045) / 11.906;  // what the import takes for rest, and four times the noise there
+  constexpr double kRest =
+      (0.5 + 4 * 0.045) / 11.906;  // what the import takes for rest, and four times the noise there
   const HammerWay way = measure_hammer_way(test::grand_action());
   for (const Known& known : {Known{"s2_medium_strike_hold", 6.5e-3, 1.08},
                              {"s3_fast_strike_free_release", 2.0e-3, 2.80},

@@ -230,6 +230,16 @@ TEST(AdaptiveLine, HasTheStatedNoiseGainWhereTheBandHoldsAllNoise) {
   EXPECT_NEAR(used.delay(), 7.5 * kPeriod, 1e-12);
 }
 
+TEST(AdaptiveLine, StopsAtTheFirstWindowThatFails) {
+  // +, -, + by 0.9 of the band is 1.2 bands off the line of three, while all 64 would be within the band of theirs
+  constexpr double kBand = 100e-6;
+  AdaptiveLine estimator(kPeriod, kBand);
+  double rate = 0;
+  for (int i = 0; i < kSettled; ++i) rate = estimator.update(i % 2 == 0 ? 0.9 * kBand : -0.9 * kBand);
+  EXPECT_EQ(estimator.length(), 2);
+  EXPECT_NEAR(rate, -1.8 * kBand / kPeriod, kRounding);
+}
+
 TEST(AdaptiveLine, LeavesAJumpBehindWithTheSecondSample) {
   AdaptiveLine estimator(kPeriod, 100e-6);
   for (int i = 0; i < 100; ++i) estimator.update(0.001);
