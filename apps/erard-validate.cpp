@@ -35,14 +35,10 @@ struct Study {
 
 /// In the order of the document.
 const std::vector<Study> kStudies{
-    {"pendulum", study::pendulum_section},
-    {"simple_models", study::simple_models_section},
-    {"thesis_tables", study::thesis_tables_section},
-    {"strokes", study::strokes_section},
-    {"without_felts", study::without_felts_section},
-    {"recordings", study::recordings_section},
-    {"causal_input", study::causal_input_section},
-    {"published_figures", study::published_figures_section},
+    {"pendulum", study::pendulum_section},           {"simple_models", study::simple_models_section},
+    {"thesis_tables", study::thesis_tables_section}, {"strokes", study::strokes_section},
+    {"without_felts", study::without_felts_section}, {"recordings", study::recordings_section},
+    {"causal_input", study::causal_input_section},   {"published_figures", study::published_figures_section},
 };
 
 constexpr const char* kPreamble =
