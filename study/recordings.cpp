@@ -76,7 +76,7 @@ HammerWay measure_hammer_way(const ActionFile& action) {
   const double at_rest = state.x[hammer];
   const auto look = [&](double coordinate) {
     state.x[hammer] = coordinate;
-    return take_snapshot(mechanism, state, tick.scheme.time_step, {}, 0);
+    return take_snapshot(mechanism, state, {}, 0);
   };
   const auto angle = [&](double coordinate) { return look(coordinate).angle[static_cast<std::size_t>(hammer)]; };
   const auto gap = [&](double coordinate) {

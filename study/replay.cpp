@@ -4,8 +4,6 @@
 
 #include <stdexcept>
 
-#include "erard/device/config_dir.hpp"
-
 namespace erard::study {
 
 const Event* PlayedStroke::find(EventKind kind) const {
@@ -51,14 +49,6 @@ const Snapshot& hardest_push(const PlayedStroke& stroke) {
   const auto last = std::find_if(stroke.row.begin(), stroke.row.end(), [&](const Snapshot& r) { return r.time > end; });
   return *std::max_element(stroke.row.begin(), last,
                            [](const Snapshot& a, const Snapshot& b) { return a.force < b.force; });
-}
-
-ActionFile default_action(const ActionOptions& options) {
-  return load_action(config_dir() / "grand_action.yaml", options);
-}
-
-Keystroke default_keystroke(const std::string& name) {
-  return read_keystroke(config_dir() / "keystrokes" / (name + ".csv"));
 }
 
 }  // namespace erard::study

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "erard/device/simulation.hpp"
+#include "study/defaults.hpp"
 #include "study/study_step.hpp"
 
 namespace erard::study {
@@ -34,10 +35,6 @@ Keystroke force_of(const PlayedStroke& stroke);
 
 /// The row with the largest force before the jack meets the let-off button.
 const Snapshot& hardest_push(const PlayedStroke& stroke);
-
-/// The grand action and a keystroke (its name in config/keystrokes) that come with the project.
-ActionFile default_action(const ActionOptions& options = {});
-Keystroke default_keystroke(const std::string& name);
 
 /// One of the two strokes of thesis 6.2 and 6.3. The measured Y is not published: the keystrokes are reconstructions.
 struct StrokeCase {

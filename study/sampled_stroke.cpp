@@ -3,13 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "erard/device/config_dir.hpp"
-
 namespace erard::study {
-
-ActionFile default_action(const ActionOptions& options) {
-  return load_action(config_dir() / "grand_action.yaml", options);
-}
 
 Keystroke sampled_keystroke(KeystrokeQuantity quantity, double duration, double spacing,
                             const std::function<double(double)>& value) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "erard/device/simulation.hpp"
+#include "study/defaults.hpp"
 
 namespace erard::study {
 
@@ -13,9 +14,6 @@ struct SampledStroke {
   RunResult result;
   std::vector<Snapshot> rows;  // one a period, the start included
 };
-
-/// config/grand_action.yaml.
-ActionFile default_action(const ActionOptions& options = {});
 
 /// Keystroke through value(t) at 0, spacing, 2 spacing ... up to `duration` [s]. The spline between samples follows a
 /// corner of value(t) to within a sample or two.

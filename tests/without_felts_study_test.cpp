@@ -106,15 +106,15 @@ TEST(Replay, ErrorsAreThoseOfTheirDefinition) {
   PlayedStroke two, three;
   for (int i = 0; i < 9; ++i) {
     Snapshot row;
-    row.time = i * kDefaultStep;
+    row.time = i * kStudyStep;
     row.force = 2;
     two.row.push_back(row);
     row.force = i < 5 ? 3 : 1e6;  // beyond the end: not looked at
     three.row.push_back(row);
   }
-  EXPECT_DOUBLE_EQ(relative_error(two, three, 4 * kDefaultStep, finger_force), 0.5);
-  EXPECT_DOUBLE_EQ(largest_difference(two, three, 4 * kDefaultStep, finger_force), 1);
-  EXPECT_DOUBLE_EQ(spread(three, 0, 4.5 * kDefaultStep, finger_force), 0);
+  EXPECT_DOUBLE_EQ(relative_error(two, three, 4 * kStudyStep, finger_force), 0.5);
+  EXPECT_DOUBLE_EQ(largest_difference(two, three, 4 * kStudyStep, finger_force), 1);
+  EXPECT_DOUBLE_EQ(spread(three, 0, 4.5 * kStudyStep, finger_force), 0);
 }
 
 }  // namespace
