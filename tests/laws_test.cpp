@@ -1,6 +1,7 @@
 // Friction that holds, contacts that close, energy that never grows: the non-smooth laws on small mechanisms.
 #include <gtest/gtest.h>
 
+#include "erard/device/action_file.hpp"
 #include "support/models.hpp"
 
 namespace erard {
@@ -145,6 +146,53 @@ TEST(RigidContact, LeverFallsOnAStopAtTheHeightOfItsHinge) {
   test::run_free(mechanism, scheme_of(5e-4, 0.5), 2, state,
                  [](const StepReport& report, const State&) { ASSERT_NE(report.status, StepStatus::not_finite); });
   EXPECT_NEAR(state.x[0], std::acos(0.0), 1e-5);  // level
+}
+
+TEST(RigidContact, SlidingOverAHillKeepsItsForceFromStepToStep) {
+  // a block slides at 0.5 m/s over the top of a circle of 0.5 m: N = m (g cos(phi) - v^2 / R), no step without it
+  const double mass = 0.2, radius = 0.5;
+  Model model = test::block_on_slope(mass, 0, 0);
+  model.contacts[0].shape_b = {ShapeKind::circle, {0, -radius}, 0, 0, radius};
+  model.bodies[1].initial = 0.01;
+  const Mechanism mechanism = build_mechanism(model);
+  State state = rest_state(mechanism, 1.25e-4);
+  state.v[0] = 0.5;
+  double least = 1e9, most = 0;
+  test::run_free(mechanism, test::default_scheme(), 0.1, state, [&](const StepReport&, const State& s) {
+    if (s.time < 5e-3) return;  // the first contact
+    const double force = s.impulse[mechanism.normal_row[0]] / 1.25e-4;
+    least = std::min(least, force);
+    most = std::max(most, force);
+  });
+  const double end = std::atan2(state.x[0], state.x[1] + radius);
+  const double speed = 0.25 + 2 * 9.81 * (radius + 0.01) * (1 - std::cos(end));  // squared, energy
+  EXPECT_NEAR(most, mass * (9.81 - 0.25 / (radius + 0.01)), 0.02 * mass * 9.81);
+  EXPECT_NEAR(least, mass * (9.81 * std::cos(end) - speed / (radius + 0.01)), 0.02 * mass * 9.81);
+}
+
+TEST(RigidContact, PushingOneOverlapOutMakesNoOther) {
+  // without its felts the action starts with the overlaps that they had in common; none of them may grow
+  ActionOptions options;
+  options.felts = FeltModel::rigid;
+  const Mechanism mechanism = build_mechanism(load_action(ERARD_CONFIG_DIR "/grand_action.yaml", options).model);
+  State state = rest_state(mechanism, 1.25e-4);
+  const auto deepest = [&] {
+    Frames frames;
+    place_bodies(mechanism.model, state.x, frames);
+    double depth = 0;
+    for (int c = 0; c < mechanism.contact_count(); ++c)
+      if (mechanism.model.contacts[c].is_active)
+        depth = std::max(depth, -locate_contact(mechanism.model.contacts[c], frames, 0).gap);
+    return depth;
+  };
+  Workspace work;
+  double before = deepest();
+  EXPECT_GT(before, 1e-4);
+  for (int i = 0; i < 8; ++i) {
+    step(mechanism, test::default_scheme(), {}, state, work);
+    EXPECT_LT(deepest(), 0.6 * before) << "step " << i;
+    before = deepest();
+  }
 }
 
 TEST(RigidContact, OverlapThatNothingCanUndoLeavesTheStateFinite) {

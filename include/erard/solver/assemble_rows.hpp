@@ -48,8 +48,15 @@ inline double free_row_velocity(const Mechanism& mechanism, const Scheme& scheme
   return after + (is_impact ? mechanism.model.contacts[row.index].restitution * before : 0.0);
 }
 
-/// Whether a row could act in this step: contacts and stops that the free motion would violate, or that acted before.
-inline bool may_act(const Mechanism& mechanism, const State& state, const Workspace& work, int number) noexcept {
+/// Way of a free fall in one step: less than that is no gap [m].
+inline double fall_of(const Mechanism& mechanism, const Scheme& scheme) noexcept {
+  return 0.5 * scheme.time_step * scheme.time_step * mechanism.model.gravity.norm();
+}
+
+/// Whether a row could act in this step: contacts and stops that the free motion would violate, or that acted before and
+/// have not opened.
+inline bool may_act(const Mechanism& mechanism, const Scheme& scheme, const State& state, const Workspace& work,
+                    int number) noexcept {
   const Row& row = mechanism.rows.row[number];
   switch (row.kind) {
     case RowKind::felt: return false;  // part of the smooth terms
@@ -57,17 +64,20 @@ inline bool may_act(const Mechanism& mechanism, const State& state, const Worksp
     case RowKind::tangential:
       return mechanism.rows.row[row.normal].kind == RowKind::felt ? work.felt[row.index].impulse > 0
                                                                   : work.is_in_play[row.normal];
-    default:
-      return (!is_rigid(mechanism, row) && state.impulse[number] > 0) ||
-             gap_at(mechanism, work, row, work.free_shift) < 0;
+    default: {
+      const bool is_near =
+          !is_rigid(mechanism, row) || gap_at(mechanism, work, row, work.start_shift) < fall_of(mechanism, scheme);
+      return (state.impulse[number] > 0 && is_near) || gap_at(mechanism, work, row, work.free_shift) < 0;
+    }
   }
 }
 
 /// Chooses the rows in play. A row once in play stays for the rest of the step.
-inline void choose_rows(const Mechanism& mechanism, const State& state, Workspace& work) noexcept {
+inline void choose_rows(const Mechanism& mechanism, const Scheme& scheme, const State& state,
+                        Workspace& work) noexcept {
   work.row_count = 0;
   for (int k = 0; k < mechanism.rows.count; ++k) {
-    if (!work.is_in_play[k]) work.is_in_play[k] = may_act(mechanism, state, work, k);
+    if (!work.is_in_play[k]) work.is_in_play[k] = may_act(mechanism, scheme, state, work, k);
     if (!work.is_in_play[k]) continue;
     work.place[k] = work.row_count;
     work.row[work.row_count++] = k;

@@ -49,7 +49,7 @@ inline SweepReport sweep_rows(const Mechanism& mechanism, const Scheme& scheme, 
                               Workspace& work) noexcept {
   const int n = mechanism.coordinate_count;
   move_freely(mechanism, scheme, state, work);
-  choose_rows(mechanism, state, work);
+  choose_rows(mechanism, scheme, state, work);
   assemble_problem(mechanism, scheme, state, work);
   work.impulse.resize(work.row_count);
   for (int j = 0; j < work.row_count; ++j) work.impulse[j] = work.guess[work.row[j]];
@@ -118,20 +118,27 @@ inline Movement measure_movement(const Mechanism& mechanism, const Scheme& schem
   return {std::sqrt(last / whole), std::sqrt(last / mechanism.total_mass) / h, std::sqrt(since_placed / whole)};
 }
 
-/// Projects the penetration of contacts without felt away: smallest displacement in the metric of A.
-inline void close_rigid_gaps(const Mechanism& mechanism, Workspace& work) noexcept {
+/// Projects the penetration of contacts without felt away, and the gap by which one that acts slides off a curved
+/// surface: smallest displacement in the metric of A.
+inline void close_rigid_gaps(const Mechanism& mechanism, const Scheme& scheme, Workspace& work) noexcept {
   constexpr int kProjectionSweeps = 20;  // bounded: what is left is taken up by the next step
+  const double fall = fall_of(mechanism, scheme);
   bool is_closed = false;
   for (int sweep = 0; sweep < kProjectionSweeps && !is_closed; ++sweep) {
     is_closed = true;
-    for (int j = 0; j < work.row_count; ++j) {
-      const Row& row = mechanism.rows.row[work.row[j]];
+    for (int k = 0; k < mechanism.rows.count; ++k) {
+      const Row& row = mechanism.rows.row[k];
       if (!is_rigid(mechanism, row)) continue;
       const double gap = gap_at(mechanism, work, row, work.end_shift);
-      if (gap >= 0) continue;
-      Coordinates way = work.half[j];
+      const bool has_slid_off = work.guess[k] > 0 && gap > 1e-3 * fall && gap < fall;
+      if (gap >= 0 && !has_slid_off) continue;
+      const RowDirection direction = direction_of(mechanism, work, row);
+      Coordinates way;
+      set_half(mechanism, direction, work, way.data());
       solve_downwards(mechanism.elimination, work.factor, way.data());
-      for (int i = 0; i < mechanism.coordinate_count; ++i) work.end_shift[i] -= way[i] * gap / work.problem.W(j, j);
+      const double mobility = direction.along(way);
+      if (!(mobility > 0)) continue;  // nothing can move there
+      for (int i = 0; i < mechanism.coordinate_count; ++i) work.end_shift[i] -= way[i] * gap / mobility;
       is_closed = false;
     }
   }
@@ -205,7 +212,7 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
   }
   report.finger_force = finger_force(mechanism, scheme, drive, state, work);
   keep_felt_history(mechanism, scheme, state, work);
-  if (mechanism.has_rigid_contacts) close_rigid_gaps(mechanism, work);
+  if (mechanism.has_rigid_contacts) close_rigid_gaps(mechanism, scheme, work);
   for (int i = 0; i < mechanism.coordinate_count; ++i) {
     state.x[i] = work.placed_position[i] + work.end_shift[i];
     state.acceleration[i] = (work.end_velocity[i] - state.v[i]) / scheme.time_step;
