@@ -1,0 +1,214 @@
+// erard-bench: does this machine hold the keys at the rate, and with what margin.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/contender.hpp"
+#include "bench/harness.hpp"
+#include "bench/results.hpp"
+#include "erard/device/error.hpp"
+#include "erard/device/output_file.hpp"
+#include "erard/version.hpp"
+
+namespace {
+
+using namespace erard;
+
+constexpr double kSlowestRate = 400, kFastestRate = 50000;  // [Hz] of the output, design range of the scheme
+constexpr int kMostKeys = 256;
+constexpr int kInterrupted = 130;
+
+std::atomic<bool> is_interrupted{false};
+
+struct Options {
+  bench::Request request;
+  std::string setting = "both", damper = "on", csv, json;
+  std::optional<double> margin;
+  bool is_real_time = false;
+};
+
+std::string scene_names() {
+  std::string text;
+  for (const bench::Scene& scene : bench::scenes()) text += fmt::format("\n  {:<14} {}", scene.name, scene.what);
+  return text;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--scene", o.request.scenes, "scenes to play, for instance --scene rest,forte (default: all)")
+      ->delimiter(',');
+  app.add_option("--keys", o.request.keys,
+                 "numbers of keys, 1 to 256; more than 1: the keyboard scenes (default: 1,8,44,88)")
+      ->delimiter(',')
+      ->check(CLI::Range(1, kMostKeys));
+  app.add_option("--rate", o.request.rates_Hz,
+                 "rates of the output in Hz, 400 to 50000 (default: 1000,2000,5000,10000 for one key, 2000 for more)")
+      ->delimiter(',');
+  app.add_option("--setting", o.setting,
+                 "cheapest: one internal step a period; default: as many as erard-sim takes, 4 at 2 kHz; both")
+      ->check(CLI::IsMember({"cheapest", "default", "both"}))
+      ->capture_default_str();
+  app.add_option("--repeat", o.request.repeat, "measure that many times as long, 1 to 100: p99.99 takes 100000 periods")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_flag("--quick", o.request.is_quick, "a few seconds: rest, piano, forte and 8 keys at 2 kHz, once each");
+  app.add_option("--margin", o.margin,
+                 "share of the period that p99.9 of every scene's ticks may take (their maximum, where ticks are too "
+                 "few), for instance 0.5; exit code 1 when one takes more (default: no verdict)");
+  app.add_flag("--realtime", o.is_real_time,
+               "run under SCHED_FIFO with locked memory, or not at all: what is refused is told, with exit code 1");
+  app.add_flag("--peers", o.request.with_peers, "MuJoCo plays the same in the same run (tools/install-peers)");
+  app.add_option("--damper", o.damper, "on: the whole action; off: the damper is clamped")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  app.add_option("--csv", o.csv, "write the results to this file, times in us (default: none)");
+  app.add_option("--json", o.json, "the same as JSON (default: none)");
+}
+
+void check(Options& o) {
+  o.request.cheapest = o.setting != "default";
+  o.request.with_default = o.setting != "cheapest";
+  for (const double rate : o.request.rates_Hz)
+    if (!(rate >= kSlowestRate && rate <= kFastestRate))
+      throw InputError(fmt::format("--rate = {}, must be {} to {} Hz", rate, kSlowestRate, kFastestRate));
+  if (o.margin && !(*o.margin > 0 && std::isfinite(*o.margin)))
+    throw InputError(fmt::format("--margin = {}, must be a positive share of the period", *o.margin));
+  if (!o.csv.empty() && o.csv == o.json)
+    throw InputError(fmt::format("--csv and --json are both {}, must be two files", o.csv));
+}
+
+/// Progress on a terminal, once a run takes longer than two seconds.
+class Progress {
+ public:
+  bool operator()(double done) {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (is_terminal_ && elapsed > 2 && elapsed - shown_ > 0.2 && done > 0) {
+      shown_ = elapsed;
+      fmt::print(stderr, "\r{:5.1f} %  {:.0f} s left ", 100 * done, elapsed * (1 - done) / done);
+      std::fflush(stderr);
+    }
+    return !is_interrupted;
+  }
+  ~Progress() {
+    if (shown_ > 0) fmt::print(stderr, "\r{:<30}\r", "");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+  double shown_ = 0;
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+};
+
+/// Scheduling and CPU of this run, in words. Throws std::runtime_error when what was asked for is refused.
+std::string settle(bool is_real_time) {
+  const int cpu = bench::pin_to_one_cpu();
+  const std::string where = cpu < 0 ? "not pinned to a CPU (refused)" : fmt::format("pinned to CPU {}", cpu);
+  if (!is_real_time) return where + ", ordinary scheduling";
+  std::string refused;
+  for (const std::string& each : bench::request_real_time()) refused += (refused.empty() ? "" : "; ") + each;
+  if (!refused.empty()) throw std::runtime_error("--realtime: " + refused);
+  return where + ", SCHED_FIFO, memory locked";
+}
+
+/// @return whether all rows of erard keep the margin
+bool keeps_margin(const std::vector<bench::Row>& rows, double margin) {
+  bool all = true;
+  for (const bench::Row& row : rows) {
+    if (row.engine != bench::Engine::erard || row.share() <= margin) continue;
+    all = false;
+    fmt::print(
+        "MISSED: {} with {} key{} at {:.0f} Hz, {}: {} of the ticks takes {:.1f} % of the period, allowed are {:g} %\n",
+        row.scene, row.keys, row.keys == 1 ? "" : "s", row.rate_Hz, row.setting,
+        std::isnan(row.tick.p999) ? "the longest" : "p99.9", 100 * row.share(), 100 * margin);
+  }
+  return all;
+}
+
+int run(Options& o) {
+  check(o);
+  const bool misses_peer = o.request.with_peers && bench::mujoco_version().empty();
+  if (misses_peer) o.request.with_peers = false;
+  const std::vector<bench::Match> plan = bench::make_plan(o.request);
+  std::optional<OutputFile> csv, json;
+  if (!o.csv.empty()) csv.emplace(o.csv);
+  if (!o.json.empty()) json.emplace(o.json);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { is_interrupted = true; });
+
+  bench::Results results;
+  results.has_damper = o.damper == "on";
+  const bench::Stage stage = bench::load_stage(results.has_damper);
+  const std::string scheduling = settle(o.is_real_time);
+  results.circumstances = bench::look_around();
+  results.circumstances.scheduling = scheduling;
+  if (misses_peer)
+    fmt::print("peer: MuJoCo is not installed in this build; tools/install-peers fetches it, then run CMake again\n\n");
+  {
+    Progress progress;
+    const bench::Harness harness{stage, results.circumstances.clock_overhead, o.is_real_time, std::ref(progress)};
+    results.rows = bench::measure(harness, plan);
+  }
+  results.is_complete = !is_interrupted;
+
+  if (csv) bench::write_csv(*csv, results);
+  if (json) bench::write_json(*json, results);
+  if (csv && json)
+    commit_together({&*csv, &*json});
+  else if (csv)
+    csv->commit();
+  else if (json)
+    json->commit();
+  fmt::print("{}", bench::table(results));
+  const bool is_kept = !o.margin || keeps_margin(results.rows, *o.margin);
+  if (std::fflush(stdout) != 0) throw std::runtime_error("the table could not be written to the standard output");
+  if (!results.is_complete) return kInterrupted;
+  return is_kept ? 0 : 1;
+}
+
+/// A message on one line, whatever names it quotes.
+void complain(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  fmt::print(stderr, "{}\n", message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures how long this machine takes for scenes on the grand action, and how exact it is at that.",
+               "erard-bench");
+  app.set_version_flag("--version", fmt::format("erard-bench {}", kVersion));
+  app.footer(
+      "Scenes:" + scene_names() +
+      "\n\nA tick is one period of all keys, a step one internal step of one key. Without options it takes about "
+      "two\nminutes. Exit codes: 0 done, 1 a scene missed the margin or the run failed, 2 bad input, 130 "
+      "interrupted (what\nwas measured is kept).");
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    complain(fmt::format("erard-bench: {}; see erard-bench --help", error.what()));
+    return 2;
+  }
+  try {
+    return run(options);
+  } catch (const erard::InputError& error) {
+    complain(error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    complain(fmt::format("erard-bench: {}", error.what()));
+    return 1;
+  }
+}

@@ -1,0 +1,181 @@
+#include "bench/harness.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/fixed_work.hpp"
+#include "bench/sample_set.hpp"
+
+namespace erard::bench {
+namespace {
+
+constexpr double kKeyboardSlice = 0.1;   // [s] simulated
+constexpr double kShortestTick = 5e-6;   // [s] with the fixed work: bounds how many fit the time of an entrant
+constexpr double kLargestSet = 600'000;  // ticks: 5 MB of times
+constexpr double kShareOfSleep = 0.1;    // real-time scheduling; the kernel takes 5 % by default, at once
+
+Maker maker_of(Engine engine) { return engine == Engine::erard ? make_erard : make_mujoco; }
+
+/// An entrant on its way.
+struct Runner {
+  Entrant entrant;
+  std::unique_ptr<Contender> contender;
+  SampleSet samples;
+  Error error;
+  double spent = 0;  // [s]
+};
+
+class MatchRun {
+ public:
+  MatchRun(const Harness& harness, const Match& match, double done_before, double done_after)
+      : harness_(harness), match_(match), done_before_(done_before), done_after_(done_after) {
+    const double duration = match.scene->is_keyboard ? kKeyboardSlice : duration_of(*match.scene, harness.stage);
+    slice_ = std::lround(duration * match.rate_Hz);
+    const double ticks = std::min(match.seconds / kShortestTick, kLargestSet);
+    const auto room = std::max(static_cast<std::size_t>(slice_), static_cast<std::size_t>(ticks));
+    for (const Entrant& entrant : match.entrants)
+      runners_.push_back({entrant,
+                          maker_of(entrant.engine)(harness.stage, job(entrant)),
+                          SampleSet(room, match.keys == 1 ? entrant.substeps : 0),
+                          {},
+                          0});
+  }
+
+  /// @param truth  converged force by engine
+  std::vector<Row> play(const std::map<Engine, ForceCurve>& truth) {
+    for (Runner& runner : runners_) warm_up(runner, truth.at(runner.entrant.engine));
+    for (bool is_busy = true; is_busy && goes_on();) {
+      is_busy = false;
+      for (Runner& runner : runners_) is_busy = play_slice(runner) || is_busy;
+    }
+    std::vector<Row> rows;
+    for (Runner& runner : runners_)
+      if (!runner.samples.ticks().empty()) rows.push_back(row_of(runner));
+    return rows;
+  }
+
+ private:
+  Job job(const Entrant& entrant) const { return {match_.scene, match_.keys, match_.rate_Hz, entrant.substeps}; }
+
+  /// Share of the plan that is done.
+  double done() const {
+    double share = 1;
+    for (const Runner& runner : runners_)
+      share = std::min(share, match_.seconds > 0 ? runner.spent / match_.seconds : runner.spent > 0 ? 1.0 : 0.0);
+    return done_before_ + share * (done_after_ - done_before_);
+  }
+  bool goes_on() const { return harness_.goes_on(done()); }
+
+  /// One slice without clock: caches, branch predictors and clock frequency settle, and the force is had for its error.
+  void warm_up(Runner& runner, const ForceCurve& truth) {
+    const double end = static_cast<double>(slice_) / match_.rate_Hz;
+    const ForceCurve force = force_of(*runner.contender, match_.rate_Hz, end, [this] { return goes_on(); });
+    if (match_.scene->release > 0) runner.error = error_of(truth, force, match_.scene->release);
+  }
+
+  /// @return whether it played; no when its time is over or its memory full
+  bool play_slice(Runner& runner) {
+    SampleSet& samples = runner.samples;
+    const bool is_first = samples.ticks().empty();
+    if ((!is_first && runner.spent >= match_.seconds) || samples.room() < static_cast<std::size_t>(slice_))
+      return false;
+    const auto clock = static_cast<std::int64_t>(std::lround(harness_.clock_overhead * 1e9));
+    std::vector<std::int64_t> step_ends(match_.keys == 1 ? static_cast<std::size_t>(runner.entrant.substeps) : 0);
+    const std::size_t before = samples.ticks().size();
+    const double done_so_far = done();
+    Effort effort;
+    const std::int64_t slice_begin = now();
+    if (!match_.scene->is_keyboard || is_first) runner.contender->start();
+    long i = 0;
+    for (; i < slice_ && harness_.goes_on(done_so_far); ++i) {
+      const StepClock steps = step_ends.empty() ? StepClock() : StepClock(step_ends.data());
+      const std::int64_t begin = now();
+      effort += runner.contender->tick(steps);
+      const std::int64_t end = now();
+      const std::int64_t work_begin = now();
+      fixed_work();
+      const std::int64_t work_end = now();
+      samples.add(begin, step_ends, end, work_begin, work_end, clock);
+    }
+    if (i < slice_) return samples.cut_back(before), false;
+    samples.add(effort);
+    const double spent = 1e-9 * static_cast<double>(now() - slice_begin);
+    runner.spent += spent;
+    if (harness_.leaves_room)
+      std::this_thread::sleep_for(std::chrono::duration<double>(spent * kShareOfSleep / (1 - kShareOfSleep)));
+    return true;
+  }
+
+  Row row_of(Runner& runner) const {
+    SampleSet& samples = runner.samples;
+    const Effort& effort = samples.effort();
+    if (!effort.is_finite)
+      throw std::runtime_error(fmt::format("{} lost its numbers in {} at {} Hz with {} steps a period",
+                                           name_of(runner.entrant.engine), match_.scene->name, match_.rate_Hz,
+                                           runner.entrant.substeps));
+    Row row;
+    row.engine = runner.entrant.engine;
+    row.scene = match_.scene->name;
+    row.keys = match_.keys;
+    row.played = match_.scene->is_keyboard         ? played_keys(match_.scene->played, match_.keys)
+                 : match_.scene->keystroke.empty() ? 0
+                                                   : 1;
+    row.rate_Hz = match_.rate_Hz;
+    row.setting = runner.entrant.setting;
+    row.substeps = runner.entrant.substeps;
+    row.tick = describe(samples.ticks());
+    row.step = describe(samples.steps());
+    row.noise = describe(samples.noise());
+    const double steps = static_cast<double>(row.tick.count) * match_.keys * runner.entrant.substeps;
+    row.iterations = static_cast<double>(effort.iterations) / steps;
+    row.sweeps =
+        runner.entrant.engine == Engine::erard ? static_cast<double>(effort.sweeps) / steps : Distribution::kNone;
+    row.not_converged = effort.not_converged;
+    row.error = runner.error;
+    return row;
+  }
+
+  const Harness& harness_;
+  const Match& match_;
+  double done_before_, done_after_;
+  long slice_ = 0;  // [ticks]
+  std::vector<Runner> runners_;
+};
+
+}  // namespace
+
+std::vector<Row> measure(const Harness& harness, const std::vector<Match>& plan) {
+  std::map<std::pair<const Scene*, Engine>, ForceCurve> converged;
+  double total = 0, done = 0;
+  const auto weight = [](const Match& match) {
+    return (match.seconds + 0.05) * static_cast<double>(match.entrants.size());
+  };
+  for (const Match& match : plan) total += weight(match);
+  std::vector<Row> rows;
+  for (const Match& match : plan) {
+    const double before = done / total;
+    done += weight(match);
+    std::map<Engine, ForceCurve> truth;
+    for (const Entrant& entrant : match.entrants) {
+      const auto [place, is_new] = converged.try_emplace({match.scene, entrant.engine});
+      if (is_new && match.scene->release > 0)
+        place->second = converged_force(maker_of(entrant.engine), harness.stage, *match.scene,
+                                        [&] { return harness.goes_on(before); });
+      truth[entrant.engine] = place->second;
+    }
+    if (!harness.goes_on(before)) break;
+    MatchRun run(harness, match, before, done / total);
+    const std::vector<Row> played = run.play(truth);
+    rows.insert(rows.end(), played.begin(), played.end());
+  }
+  compare_with_peers(rows);
+  return rows;
+}
+
+}  // namespace erard::bench

@@ -1,0 +1,28 @@
+// The machine that is measured, and what it grants.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace erard::bench {
+
+/// What a number was measured with.
+struct Circumstances {
+  std::string commit;    // git describe, or "unknown"
+  std::string compiler;  // with version and flags
+  std::string cpu;       // model name in /proc/cpuinfo, or "unknown"
+  std::string kernel;
+  std::string scheduling;     // of this process
+  double clock_overhead = 0;  // [s], subtracted
+  std::string peer;           // name and version; empty: not installed
+};
+
+Circumstances look_around();
+
+/// Keeps this thread on one CPU, the last of those it may use. @return its number, or -1 when that was refused
+int pin_to_one_cpu();
+
+/// Asks for SCHED_FIFO and for locked memory. @return what was refused, each with its remedy; empty: all granted
+std::vector<std::string> request_real_time();
+
+}  // namespace erard::bench

@@ -1,0 +1,46 @@
+// Which scenes are measured, at which rates and settings, for how long.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/scene.hpp"
+
+namespace erard::bench {
+
+enum class Engine { erard, mujoco };
+const char* name_of(Engine engine);
+
+/// What a user asks for; empty lists: the choice of the default run.
+struct Request {
+  std::vector<std::string> scenes;
+  std::vector<int> keys;
+  std::vector<double> rates_Hz;
+  bool cheapest = true, with_default = true;  // settings
+  bool with_peers = false;
+  int repeat = 1;
+  bool is_quick = false;
+};
+
+/// An engine at a number of internal steps a period.
+struct Entrant {
+  Engine engine = Engine::erard;
+  std::string setting;  // "cheapest" (one step), "default", or "both" where they are the same
+  int substeps = 1;
+};
+
+/// Entrants that play the same scene at the same rate, in turn, slice by slice: what the machine does meanwhile meets
+/// all of them.
+struct Match {
+  const Scene* scene = nullptr;
+  int keys = 1;
+  double rate_Hz = 2000;
+  std::vector<Entrant> entrants;
+  double seconds = 0;  // of timed play for each entrant; it always gets one whole slice
+};
+
+/// One key on 1, 2, 5 and 10 kHz; 8, 44 and 88 keys on 2 kHz; longest for one key on 2 kHz. About a minute and a half.
+/// Throws InputError where the request does not fit: scenes that are not known, scenes of one key for many.
+std::vector<Match> make_plan(const Request& request);
+
+}  // namespace erard::bench
