@@ -1,0 +1,55 @@
+// Plays one scene for tools/count-instructions: valgrind counts what counted_tick() executes, and nothing else.
+//   count_scene SCENE SETTING   prints the number of internal steps that were counted
+//   count_scene --build         prints what the number of instructions depends on
+// SCENE: a scene of one key; SETTING: cheapest or default, at 2 kHz. With the damper: all of the action.
+#include <fmt/format.h>
+#include <gnu/libc-version.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "bench/build.hpp"
+#include "bench/keyboard.hpp"
+
+namespace {
+
+using namespace erard;
+
+constexpr double kRate_Hz = 2000;
+constexpr double kRest = 0.1;  // [s] of rest that are counted
+
+/// One period. Not inlined: its name is what valgrind looks for.
+[[gnu::noinline]] void counted_tick(bench::Keyboard& keyboard) { keyboard.tick({}); }
+
+int count(const bench::Scene& scene, bool is_cheapest) {
+  const bench::Stage stage = bench::load_stage(true);
+  TickSettings settings;
+  settings.set_rate(kRate_Hz, is_cheapest ? 1 : 0);
+  const auto keyboard = std::make_unique<bench::Keyboard>(stage.mechanism, settings, bench::cast(scene, stage, 1));
+  const long ticks = std::lround((scene.release > 0 ? scene.release : kRest) * kRate_Hz);
+  for (long i = 0; i < ticks; ++i) counted_tick(*keyboard);
+  fmt::print("{}\n", ticks * settings.substeps);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string first = argc > 1 ? argv[1] : "", setting = argc > 2 ? argv[2] : "";
+  if (argc == 2 && first == "--build") {
+    fmt::print("{}; Eigen {}.{}.{}; glibc {}\n", bench::build_compiler(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+               EIGEN_MINOR_VERSION, gnu_get_libc_version());
+    return 0;
+  }
+  const bench::Scene* scene = bench::find_scene(first);
+  if (scene == nullptr || scene->is_keyboard || (setting != "cheapest" && setting != "default")) {
+    fmt::print(stderr, "usage: count_scene SCENE cheapest|default, or count_scene --build\n");
+    return 2;
+  }
+  return count(*scene, setting == "cheapest");
+} catch (const std::exception& error) {
+  fmt::print(stderr, "count_scene: {}\n", error.what());
+  return 1;
+}
