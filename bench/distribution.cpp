@@ -33,4 +33,12 @@ Distribution describe(std::span<double> values) {
   return d;
 }
 
+std::vector<double> fastest_of_passes(std::span<const double> times, std::size_t length) {
+  if (times.size() < kPasses * length) return {};
+  std::vector<double> fastest(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(length));
+  for (std::size_t i = 0; i < times.size() / length * length; ++i)
+    fastest[i % length] = std::min(fastest[i % length], times[i]);
+  return fastest;
+}
+
 }  // namespace erard::bench

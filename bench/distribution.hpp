@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace erard::bench {
 
@@ -29,5 +30,12 @@ struct Distribution {
 
 /// @param values  in any order; sorted by this
 Distribution describe(std::span<double> values);
+
+/// Of something that is the same every time it is played: each of its ticks at its fastest. What other jobs and
+/// interrupts did to one pass they did not do to all of them, so this is the engine's own, dear ticks included.
+/// @param times  pass after pass, each of `length` ticks
+/// @return `length` times; empty with less than kPasses passes
+std::vector<double> fastest_of_passes(std::span<const double> times, std::size_t length);
+inline constexpr std::size_t kPasses = 5;
 
 }  // namespace erard::bench

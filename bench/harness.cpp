@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <stdexcept>
-#include <thread>
 
+#include "bench/breather.hpp"
 #include "bench/fixed_work.hpp"
 #include "bench/sample_set.hpp"
 
@@ -18,7 +17,6 @@ namespace {
 constexpr double kKeyboardSlice = 0.1;   // [s] simulated
 constexpr double kShortestTick = 5e-6;   // [s] with the fixed work: bounds how many fit the time of an entrant
 constexpr double kLargestSet = 600'000;  // ticks: 5 MB of times
-constexpr double kShareOfSleep = 0.1;    // real-time scheduling; the kernel takes 5 % by default, at once
 
 Maker maker_of(Engine engine) { return engine == Engine::erard ? make_erard : make_mujoco; }
 
@@ -94,6 +92,7 @@ class MatchRun {
     if (!match_.scene->is_keyboard || is_first) runner.contender->start();
     long i = 0;
     for (; i < slice_ && harness_.goes_on(done_so_far); ++i) {
+      breather_.breathe();
       const StepClock steps = step_ends.empty() ? StepClock() : StepClock(step_ends.data());
       const std::int64_t begin = now();
       effort += runner.contender->tick(steps);
@@ -105,10 +104,7 @@ class MatchRun {
     }
     if (i < slice_) return samples.cut_back(before), false;
     samples.add(effort);
-    const double spent = 1e-9 * static_cast<double>(now() - slice_begin);
-    runner.spent += spent;
-    if (harness_.leaves_room)
-      std::this_thread::sleep_for(std::chrono::duration<double>(spent * kShareOfSleep / (1 - kShareOfSleep)));
+    runner.spent += 1e-9 * static_cast<double>(now() - slice_begin);
     return true;
   }
 
@@ -129,6 +125,10 @@ class MatchRun {
     row.rate_Hz = match_.rate_Hz;
     row.setting = runner.entrant.setting;
     row.substeps = runner.entrant.substeps;
+    if (!match_.scene->is_keyboard) {
+      std::vector<double> fastest = fastest_of_passes(samples.ticks(), static_cast<std::size_t>(slice_));
+      row.undisturbed = describe(fastest);
+    }
     row.tick = describe(samples.ticks());
     row.step = describe(samples.steps());
     row.noise = describe(samples.noise());
@@ -144,6 +144,7 @@ class MatchRun {
   const Harness& harness_;
   const Match& match_;
   double done_before_, done_after_;
+  Breather breather_{harness_.leaves_room};
   long slice_ = 0;  // [ticks]
   std::vector<Runner> runners_;
 };

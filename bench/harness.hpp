@@ -14,7 +14,7 @@ using Monitor = std::function<bool(double done)>;
 struct Harness {
   const Stage& stage;
   double clock_overhead;  // [s]
-  bool leaves_room;       // real-time scheduling: sleep now and then, or the kernel takes its share in one piece
+  bool leaves_room;       // real-time scheduling: sleep between ticks now and then, see Breather
   Monitor goes_on;
 };
 

@@ -37,6 +37,9 @@ std::vector<Cell> cells_of(const Row& r) {
   cells.push_back({"share_of_period", {}, r.share()});
   cells.push_back({"real_time_factor", {}, r.real_time_factor()});
   add_times(cells, "step", r.step);
+  cells.push_back({"undisturbed_median_us", {}, 1e6 * r.undisturbed.median});
+  cells.push_back({"undisturbed_p99_us", {}, 1e6 * r.undisturbed.p99});
+  cells.push_back({"undisturbed_max_us", {}, 1e6 * r.undisturbed.max});
   cells.push_back({"iterations_a_step", {}, r.iterations});
   cells.push_back({"sweeps_a_step", {}, r.sweeps});
   cells.push_back({"not_converged", {}, static_cast<double>(r.not_converged)});
@@ -44,7 +47,7 @@ std::vector<Cell> cells_of(const Row& r) {
   cells.push_back({"rms_error_N", {}, r.error.rms_N});
   add_times(cells, "noise", r.noise);
   cells.push_back({"times_peer_median", {}, r.times_peer_median});
-  cells.push_back({"times_peer_min", {}, r.times_peer_min});
+  cells.push_back({"times_peer_undisturbed", {}, r.times_peer_undisturbed});
   return cells;
 }
 

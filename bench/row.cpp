@@ -9,7 +9,8 @@ void compare_with_peers(std::vector<Row>& rows) {
                            ours.keys == peer.keys && ours.rate_Hz == peer.rate_Hz && ours.substeps == peer.substeps;
       if (!is_pair) continue;
       ours.times_peer_median = ours.tick.median / peer.tick.median;
-      ours.times_peer_min = ours.tick.min / peer.tick.min;
+      if (ours.undisturbed.count > 0 && peer.undisturbed.count > 0)
+        ours.times_peer_undisturbed = ours.undisturbed.total / peer.undisturbed.total;
     }
 }
 

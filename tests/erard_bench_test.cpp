@@ -91,6 +91,15 @@ TEST(Quantile, IsTheSmallestValueThatAShareOfAllDoesNotExceed) {
   }
 }
 
+TEST(FastestOfPasses, IsThatOfEachTickAndNeedsFivePasses) {
+  std::vector<double> times;
+  for (int pass = 0; pass < 5; ++pass)
+    for (int tick = 0; tick < 5; ++tick) times.push_back(tick == pass ? tick : 100 + tick);  // each undisturbed once
+  EXPECT_EQ(fastest_of_passes(times, 5), std::vector<double>({0, 1, 2, 3, 4}));
+  times.pop_back();
+  EXPECT_TRUE(fastest_of_passes(times, 5).empty());
+}
+
 TEST(SampleSet, TakesTheClockOutOfEveryInterval) {
   SampleSet samples(2, 2);
   const std::int64_t ends[] = {1110, 1220};
@@ -204,10 +213,11 @@ TEST(Row, ComparesWithThePeerAtTheSameNumberOfSteps) {
   rows[1].engine = rows[2].engine = Engine::mujoco;
   rows[2].substeps = 4;
   rows[0].tick.median = 3, rows[1].tick.median = 2, rows[2].tick.median = 30;
-  rows[0].tick.min = 1, rows[1].tick.min = 2, rows[2].tick.min = 20;
+  rows[0].undisturbed.total = 1, rows[1].undisturbed.total = 2, rows[2].undisturbed.total = 20;
+  for (Row& row : rows) row.undisturbed.count = 1;
   compare_with_peers(rows);
   EXPECT_EQ(rows[0].times_peer_median, 1.5);
-  EXPECT_EQ(rows[0].times_peer_min, 0.5);
+  EXPECT_EQ(rows[0].times_peer_undisturbed, 0.5);
   EXPECT_TRUE(std::isnan(rows[1].times_peer_median));
 }
 
