@@ -104,6 +104,9 @@ std::string table(const Results& results) {
   text +=
       "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
       "steps of the same engine\n";
+#ifndef __OPTIMIZE__
+  text += "NOTE: built without optimisation, these are not the engine's times\n";
+#endif
   if (!results.is_complete) text += "INTERRUPTED: not all that was planned\n";
   return text;
 }
