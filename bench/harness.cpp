@@ -35,8 +35,10 @@ class MatchRun {
       : harness_(harness), match_(match), done_before_(done_before), done_after_(done_after) {
     const double duration = match.scene->is_keyboard ? kKeyboardSlice : duration_of(*match.scene, harness.stage);
     slice_ = std::lround(duration * match.rate_Hz);
-    const double ticks = std::min(match.seconds / kShortestTick, kLargestSet);
-    const auto room = std::max(static_cast<std::size_t>(slice_), static_cast<std::size_t>(ticks));
+    const std::size_t passes = match.scene->is_keyboard || match.seconds == 0 ? 1 : kPasses;
+    least_ = passes * static_cast<std::size_t>(slice_);
+    const auto ticks = static_cast<std::size_t>(std::min(match.seconds / kShortestTick, kLargestSet));
+    const std::size_t room = std::max(least_, ticks);
     for (const Entrant& entrant : match.entrants)
       runners_.push_back({entrant,
                           maker_of(entrant.engine)(harness.stage, job(entrant)),
@@ -81,8 +83,8 @@ class MatchRun {
   bool play_slice(Runner& runner) {
     SampleSet& samples = runner.samples;
     const bool is_first = samples.ticks().empty();
-    if ((!is_first && runner.spent >= match_.seconds) || samples.room() < static_cast<std::size_t>(slice_))
-      return false;
+    const bool has_enough = runner.spent >= match_.seconds && samples.ticks().size() >= least_;
+    if (has_enough || samples.room() < static_cast<std::size_t>(slice_)) return false;
     const auto clock = static_cast<std::int64_t>(std::lround(harness_.clock_overhead * 1e9));
     std::vector<std::int64_t> step_ends(match_.keys == 1 ? static_cast<std::size_t>(runner.entrant.substeps) : 0);
     const std::size_t before = samples.ticks().size();
@@ -145,7 +147,8 @@ class MatchRun {
   const Match& match_;
   double done_before_, done_after_;
   Breather breather_{harness_.leaves_room};
-  long slice_ = 0;  // [ticks]
+  long slice_ = 0;         // [ticks]
+  std::size_t least_ = 0;  // [ticks] that every entrant plays, however long they take
   std::vector<Runner> runners_;
 };
 

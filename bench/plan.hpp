@@ -36,7 +36,7 @@ struct Match {
   int keys = 1;
   double rate_Hz = 2000;
   std::vector<Entrant> entrants;
-  double seconds = 0;  // of timed play for each entrant; it always gets one whole slice
+  double seconds = 0;  // of timed play for each entrant; strokes get five passes at least, one when this is 0
 };
 
 /// One key on 1, 2, 5 and 10 kHz; 8, 44 and 88 keys on 2 kHz; longest for one key on 2 kHz. About a minute and a half.

@@ -100,7 +100,9 @@ std::string table(const Results& results) {
       "period;\n-: not measured, or too few samples to tell\n";
   text += fmt::format("\n{:43}{:>16}{:>26}{:>16}{:>16}{:>18}\n{}{}", "", "one step [us]", "undisturbed tick [us]",
                       "a step", "error of force", "times the peer", entrant_head(), work_head());
-  text += all_lines(results.rows, work_of);
+  std::vector<Row> told = results.rows;
+  std::erase_if(told, [](const Row& row) { return row.step.count == 0 && std::isnan(row.times_peer_median); });
+  text += all_lines(told, work_of);
   text +=
       "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
       "steps of the same engine\n";
