@@ -17,6 +17,7 @@ if(library AND EXISTS "${folder}/include/mujoco/mujoco.h")
   erard_embed_text(erard_bench peer_file FILES peers/action.xml)
   target_sources(erard_bench PRIVATE peers/mujoco.cpp)
   target_link_libraries(erard_bench PRIVATE erard_mujoco)
+  set_target_properties(erard_bench PROPERTIES ERARD_PEER_FOLDER "${folder}")  # where an installed program finds it
 elseif(ERARD_MUJOCO_DIR)
   message(FATAL_ERROR "ERARD_MUJOCO_DIR = ${ERARD_MUJOCO_DIR}: holds no include/mujoco/mujoco.h with libmujoco.so.*")
 else()

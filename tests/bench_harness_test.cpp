@@ -1,0 +1,216 @@
+// The benchmark harness: what its numbers mean. Nothing here asks how fast anything is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "bench/distribution.hpp"
+#include "bench/keyboard.hpp"
+#include "bench/plan.hpp"
+#include "bench/row.hpp"
+#include "bench/sample_set.hpp"
+#include "support/strokes.hpp"
+
+namespace erard::bench {
+namespace {
+
+/// 1, 2, ... count in an order of no meaning.
+std::vector<double> shuffled(int count) {
+  std::vector<double> values(static_cast<std::size_t>(count));
+  std::iota(values.begin(), values.end(), 1.0);
+  std::shuffle(values.begin(), values.end(), std::mt19937(1));
+  return values;
+}
+
+TEST(Distribution, OfTheFirstWholeNumbersIsKnown) {
+  std::vector<double> values = shuffled(100000);
+  const Distribution d = describe(values);
+  EXPECT_EQ(d.count, 100000u);
+  EXPECT_EQ(d.min, 1);
+  EXPECT_EQ(d.median, 50000);
+  EXPECT_EQ(d.p99, 99000);
+  EXPECT_EQ(d.p999, 99900);
+  EXPECT_EQ(d.p9999, 99990);
+  EXPECT_EQ(d.max, 100000);
+  EXPECT_EQ(d.total, 5000050000);
+}
+
+TEST(Distribution, QuantilesAreStatedOnlyWithTenValuesBeyond) {
+  const auto stated = [](int count) {
+    std::vector<double> values = shuffled(count);
+    const Distribution d = describe(values);
+    return std::vector<bool>{!std::isnan(d.p99), !std::isnan(d.p999), !std::isnan(d.p9999)};
+  };
+  using List = std::vector<bool>;
+  EXPECT_EQ(stated(999), List({false, false, false}));
+  EXPECT_EQ(stated(1000), List({true, false, false}));
+  EXPECT_EQ(stated(9999), List({true, false, false}));
+  EXPECT_EQ(stated(10000), List({true, true, false}));
+  EXPECT_EQ(stated(99999), List({true, true, false}));
+  EXPECT_EQ(stated(100000), List({true, true, true}));
+}
+
+TEST(Distribution, ItsTailIsNeverLessThanWhatItStandsFor) {
+  std::vector<double> few = shuffled(500), many = shuffled(20000);
+  EXPECT_EQ(describe(few).tail(), 500);  // p99.9 is not stated: the maximum
+  EXPECT_EQ(describe(many).tail(), 19980);
+}
+
+TEST(Distribution, OfNothingSaysNothing) {
+  const Distribution d = describe({});
+  EXPECT_EQ(d.count, 0u);
+  for (const double value : {d.min, d.median, d.p99, d.max, d.tail()}) EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(Quantile, IsTheSmallestValueThatAShareOfAllDoesNotExceed) {
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<double> values(1 + random() % 300);
+    for (double& value : values) value = static_cast<double>(random() % 50);  // with ties
+    std::sort(values.begin(), values.end());
+    for (const double q : {0.01, 0.25, 0.5, 0.9, 0.99, 1.0}) {
+      const double found = quantile(values, q);
+      const auto not_above = std::upper_bound(values.begin(), values.end(), found) - values.begin();
+      const auto below = std::lower_bound(values.begin(), values.end(), found) - values.begin();
+      const double wanted = q * static_cast<double>(values.size());
+      EXPECT_GE(static_cast<double>(not_above), wanted - 1e-6) << "seed 7, trial " << trial << ", q " << q;
+      EXPECT_LT(static_cast<double>(below), wanted) << "seed 7, trial " << trial << ", q " << q;
+    }
+  }
+}
+
+TEST(FastestOfPasses, IsThatOfEachTickAndNeedsFivePasses) {
+  std::vector<double> times;
+  for (int pass = 0; pass < 5; ++pass)
+    for (int tick = 0; tick < 5; ++tick) times.push_back(tick == pass ? tick : 100 + tick);  // each undisturbed once
+  EXPECT_EQ(fastest_of_passes(times, 5), std::vector<double>({0, 1, 2, 3, 4}));
+  times.pop_back();
+  EXPECT_TRUE(fastest_of_passes(times, 5).empty());
+}
+
+TEST(SampleSet, TakesTheClockOutOfEveryInterval) {
+  SampleSet samples(2, 2);
+  const std::int64_t ends[] = {1110, 1220};
+  samples.add(1000, ends, 1250, 2000, 5010, 10);
+  ASSERT_EQ(samples.ticks().size(), 1u);
+  ASSERT_EQ(samples.steps().size(), 2u);
+  EXPECT_NEAR(samples.ticks()[0], 220e-9, 1e-15);  // 250 ns with three looks at the clock
+  EXPECT_NEAR(samples.steps()[0], 100e-9, 1e-15);
+  EXPECT_NEAR(samples.steps()[1], 100e-9, 1e-15);
+  EXPECT_NEAR(samples.noise()[0], 3000e-9, 1e-15);
+  EXPECT_EQ(samples.room(), 1u);
+}
+
+TEST(SampleSet, ASliceThatWasBrokenOffIsForgotten) {
+  SampleSet samples(10, 2);
+  const std::int64_t ends[] = {10, 20};
+  for (int i = 0; i < 7; ++i) samples.add(0, ends, 30, 40, 50, 0);
+  samples.cut_back(4);
+  EXPECT_EQ(samples.ticks().size(), 4u);
+  EXPECT_EQ(samples.steps().size(), 8u);
+  EXPECT_EQ(samples.noise().size(), 4u);
+  EXPECT_EQ(samples.room(), 6u);
+}
+
+TEST(Keyboard, OfOneKeyPlaysWhatRunPlays) {
+  ActionOptions options;
+  options.damper = true;
+  const Stage stage = load_stage(true);
+  const Keystroke keystroke = test::keystroke("forte");
+  const test::Stroke stroke = test::play(test::grand_action(options), keystroke, test::default_tick(), 0.2);
+  Keyboard keyboard(stage.mechanism, test::default_tick(), cast(*find_scene("forte"), stage, 1));
+  keyboard.start();
+  for (std::size_t i = 1; i < stroke.row.size(); ++i) {
+    keyboard.tick({});
+    ASSERT_EQ(keyboard.force(), stroke.row[i].force) << "period " << i;  // the same calls, so the same bits
+  }
+}
+
+TEST(Keyboard, PlaysTheSameEveryTime) {
+  const Stage stage = load_stage(true);
+  Keyboard keyboard(stage.mechanism, test::default_tick(), cast(*find_scene("keyboard_all"), stage, 3));
+  std::vector<double> force[2];
+  for (auto& each : force) {
+    keyboard.start();
+    for (int i = 0; i < 1200; ++i) {  // a whole stroke of 0.6 s
+      keyboard.tick({});
+      each.push_back(keyboard.force());
+    }
+  }
+  EXPECT_EQ(force[0], force[1]);
+  EXPECT_GT(*std::max_element(force[0].begin(), force[0].end()), 5);  // [N] it is played, forte
+}
+
+TEST(Keyboard, NoTwoOf88KeysAreInPhase) {
+  std::set<double> phases;
+  for (int key = 0; key < 88; ++key) phases.insert(phase_of(key));
+  ASSERT_EQ(phases.size(), 88u);
+  double before = *phases.rbegin() - 1;
+  for (const double phase : phases) {
+    EXPECT_GT(phase - before, 2 * 0.5 / 600);  // two periods of 2 kHz in a stroke of 600 ms
+    before = phase;
+  }
+}
+
+TEST(Scene, PlaysAsManyKeysAsItSays) {
+  const Stage stage = load_stage(true);
+  for (const int keys : {8, 44, 88})
+    for (const Scene& scene : scenes()) {
+      if (!scene.is_keyboard) continue;
+      const std::vector<Part> parts = cast(scene, stage, keys);
+      const auto played =
+          std::count_if(parts.begin(), parts.end(), [](const Part& p) { return p.keystroke != nullptr; });
+      EXPECT_EQ(parts.size(), static_cast<std::size_t>(keys));
+      EXPECT_EQ(played, played_keys(scene.played, keys)) << scene.name << ", " << keys;
+    }
+  EXPECT_EQ(played_keys(Played::some, 88), 10);
+  EXPECT_EQ(played_keys(Played::some, 8), 4);
+}
+
+TEST(Accuracy, OfAConstantOffsetIsThatOffset) {
+  ForceCurve truth, curve;
+  for (int i = 0; i <= 1000; ++i) {
+    truth.time.push_back(1e-4 * i);
+    truth.force.push_back(2);
+  }
+  for (int i = 0; i <= 200; ++i) {
+    curve.time.push_back(5e-4 * i);
+    curve.force.push_back(i <= 100 ? 2.5 : 100);  // what comes after the release does not count
+  }
+  const Error error = error_of(truth, curve, 0.05);
+  EXPECT_NEAR(error.rms_N, 0.5, 1e-12);
+  EXPECT_NEAR(error.eta, 0.25, 1e-12);
+  EXPECT_TRUE(std::isnan(error_of({}, curve, 0.05).eta));
+}
+
+TEST(Plan, HasEverySettingOnceAndKeyboardsAtTwoKilohertz) {
+  std::set<std::string> names;
+  for (const Match& match : make_plan({})) {
+    names.insert(match.scene->name);
+    std::set<int> substeps;
+    for (const Entrant& entrant : match.entrants) EXPECT_TRUE(substeps.insert(entrant.substeps).second);
+    if (match.scene->is_keyboard) {
+      EXPECT_EQ(match.rate_Hz, 2000);
+    }
+  }
+  EXPECT_EQ(names.size(), scenes().size());
+}
+
+TEST(Row, ComparesWithThePeerAtTheSameNumberOfSteps) {
+  std::vector<Row> rows(3);
+  rows[1].engine = rows[2].engine = Engine::mujoco;
+  rows[2].substeps = 4;
+  rows[0].tick.median = 3, rows[1].tick.median = 2, rows[2].tick.median = 30;
+  rows[0].undisturbed.total = 1, rows[1].undisturbed.total = 2, rows[2].undisturbed.total = 20;
+  for (Row& row : rows) row.undisturbed.count = 1;
+  compare_with_peers(rows);
+  EXPECT_EQ(rows[0].times_peer_median, 1.5);
+  EXPECT_EQ(rows[0].times_peer_undisturbed, 0.5);
+  EXPECT_TRUE(std::isnan(rows[1].times_peer_median));
+}
+
+}  // namespace
+}  // namespace erard::bench
