@@ -50,6 +50,17 @@ bool have_same_contacts(const State& a, const State& b) {
   return ((a.impulse.array() > 0) == (b.impulse.array() > 0)).all();
 }
 
+/// The event of the same kind nearest to this one, within 20 ms (strikes of one key are 100 ms apart), or null.
+const Event* nearest(const std::vector<Event>& events, const Event& to) {
+  const Event* found = nullptr;
+  double least = 0.020;  // [s]
+  for (const Event& event : events) {
+    const double apart = std::abs(event.time - to.time);
+    if (event.kind == to.kind && apart < least) least = apart, found = &event;
+  }
+  return found;
+}
+
 /// Length of a step, as its tables name it.
 std::string microseconds(double step) { return fmt::format("{:g} us", 1e6 * step); }
 
@@ -197,20 +208,17 @@ ForceError force_error(const JudgedRun& run, const JudgedRun& truth, double end)
 }
 
 EventError event_error(const JudgedRun& run, const JudgedRun& truth) {
-  constexpr double kApart = 0.020;  // [s] two strikes of one key are 100 ms apart
   EventError error;
   for (const Event& expected : truth.events) {
-    const Event* found = nullptr;
-    for (const Event& event : run.events)
-      if (event.kind == expected.kind && std::abs(event.time - expected.time) < kApart &&
-          (found == nullptr || std::abs(event.time - expected.time) < std::abs(found->time - expected.time)))
-        found = &event;
+    const Event* found = nearest(run.events, expected);
+    if (found != nullptr && nearest(truth.events, *found) != &expected) found = nullptr;
     if (found == nullptr) {
       ++error.missing;
       continue;
     }
     ++error.compared;
     const double late = found->time - expected.time;
+    error.beyond += std::abs(late) > 2.5e-4;
     if (std::abs(late) > std::abs(error.time)) error.time = late, error.worst = expected.kind;
     if (expected.kind != EventKind::hammer_meets_string) continue;
     const double fast = found->hammer_speed / expected.hammer_speed - 1;

@@ -109,10 +109,11 @@ struct ForceError {
 };
 ForceError force_error(const JudgedRun& run, const JudgedRun& truth, double end);
 
-/// Error of the events of a stroke. Each belongs to the nearest of its kind within 20 ms.
+/// Error of the events of a stroke. Two are the same when each is the other's nearest of its kind, within 20 ms.
 struct EventError {
   int compared = 0;
   int missing = 0;                          // in the run
+  int beyond = 0;                           // times that are off by more than 0.25 ms
   double time = 0;                          // the largest, signed: late is positive [s]
   EventKind worst = EventKind::escapement;  // which
   double speed = 0;                         // of the hammer when it meets the string, the largest, relative, signed [-]

@@ -32,7 +32,7 @@ ForceError error_of(const std::string& name, const Candidate& candidate, double 
   return force_error(play_judged(default_action(), j.stroke, candidate), j.truth, end);
 }
 
-/// Goals at 2 kHz [N], of forces that peak at 3 N (piano), 20 N (forte) and 60 N (very fast).
+/// Goals at 2 kHz [N], of forces that peak at 3 N (piano), 10 N (forte) and 60 N (very fast).
 struct Goal {
   const char* stroke;
   double rms, largest;
