@@ -151,7 +151,7 @@ void draw_diagram(const std::filesystem::path& svg, const std::vector<Judgement>
                 {"computing time of a tick of 0.5 ms [us]", {0.3, 300}, true},
                 {"error of the force, RMS [N]", {1e-6, 10}, true},
                 {},
-                s == 0 ? "bottom left reverse Left" : "off"};
+                s == 0 ? "bottom left reverse Left samplen 1.5 spacing 0.9 font ',10'" : "off"};
     Curve chosen{"the default", {}, {}, "points pt 7 ps 1.4 lc rgb '#d62728'"};
     for (const Judgement& j : all) {
       const std::string& family = j.candidate.family;
