@@ -86,8 +86,7 @@ std::string describe_jams(const ActionFile& action, const Reference& reference) 
   const ForceError e =
       force_error(run, play_judged(action, reference.stroke, ticking("", "", patient)), reference.stroke.end);
   return fmt::format(
-      "- Where the hammer is jammed between backcheck and key everything sticks, impulses are not unique, and sweeps "
-      "converge "
+      "- Where many contacts stick at once impulses are not unique, and sweeps converge "
       "slowly: {} steps of `{}` reach the limit of {}. The force is at most {:.4f} N from that with 5000 sweeps.\n",
       run.unconverged, reference.stroke.name, Scheme{}.sweep_limit, e.largest);
 }
@@ -111,7 +110,7 @@ relative error of thesis (6.3). Regenerate all of this page, in a minute or two,
     build/release/bin/bench_accuracy
 
 **The default: theta = 1/2, steps of 250 us; one that surprises is refused and retaken in four.** Its goals, 0.02 (piano), 0.05
-(forte) and 0.1 N RMS (very fast: key bottom after 25 ms), never off by more than 0.25 N (very fast: 1 N), blows within 0.5 % of
+(forte) and 0.1 N RMS (very fast: key bottom after 24 ms), never off by more than 0.25 N (very fast: 1 N), blows within 0.5 % of
 their speed, events within 0.25 ms, hold for these three and the repetition, and are asserted by `tests/accuracy_study_test.cpp`.
 )";
 
@@ -133,7 +132,7 @@ machine: of every tick the least of seven runs. Compare them with each other, no
   theta = 1 is no better with 62.5 us than theta = 1/2 with 500 us (piano).
 - The fractional-step scheme (strongly A-stable, of second order) is about as good as fixed steps of the same cost: damping of that
   order buys nothing here. Richardson's extrapolation wins over fixed steps for piano from 125 us on, for forte from 62.5 on; with
-  longer ones the impacts spoil it, and nowhere does it win over steps that are refused.
+  longer ones the impacts spoil it, and at no cost of the diagram does it win over steps that are refused.
 - Felts with mass have the same errors, against themselves, at three to four times the cost.
 )";
 
@@ -203,9 +202,8 @@ int main(int argc, char** argv) try {
   text += kEvents;
   text += event_table(action, all) + kExceptions + ringing_table(action, all);
   text +=
-      "\n## Surprise limit and refinement\nWith 30 and 4 a forte would just meet its goal of 0.05 N; 3 and 4 cost a "
-      "fourth "
-      "more or so. With 8 the very fast stroke gains, at twice the steps in the dearest tick.\n\n" +
+      "\n## Surprise limit and refinement\nWith 30 and 4 a forte would just meet its goal of 0.05 N; 3 and 4 cost up "
+      "to a third more and err less. With 8 the very fast stroke gains, at twice the steps in the dearest tick.\n\n" +
       surprise_table(action, few);
   text +=
       "\n## Every scheme\nEach cell: eta % / RMS N / largest N. Steps longer than a tick are judged at their own "

@@ -22,7 +22,7 @@ double quintic(double part) {
   return s * s * s * (10 + s * (-15 + 6 * s));
 }
 
-/// Down by 13.5 mm in 34 ms, so hard that the key is at its bottom 28 ms after its start, and up again.
+/// Down by 13.5 mm in 34 ms, so hard that the key is at its bottom 24 ms after its start, and up again.
 Keystroke very_fast_stroke() {
   return sampled_keystroke(KeystrokeQuantity::position, 0.2, 5e-4, [](double t) {
     return 0.0135 * (quintic((t - 0.005) / 0.034) - quintic((t - 0.1) / 0.06));
