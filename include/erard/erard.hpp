@@ -41,5 +41,7 @@
 // haptics: what the finger moves and feels
 #include "erard/haptics/finger.hpp"
 #include "erard/haptics/tick.hpp"
+#include "erard/haptics/sleep.hpp"
+#include "erard/haptics/keyboard.hpp"
 #include "erard/haptics/velocity.hpp"
 #include "erard/haptics/events.hpp"

@@ -1,0 +1,198 @@
+// Many keys in one period of the host: inputs in, forces out; a key at rest costs a comparison.
+#pragma once
+
+#include <cassert>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "erard/haptics/sleep.hpp"
+#include "erard/haptics/tick.hpp"
+#include "erard/mechanics/rest.hpp"
+
+namespace erard {
+
+/// Drive during one period: straight lines from the sample before to the newest, for value and rate alike.
+struct LineInput {
+  DriveSample from, to;
+  double start = 0;   // [s]
+  double period = 1;  // [s]
+
+  DriveSample at(double time) const noexcept {
+    const double part = (time - start) / period;
+    return {from.value + part * (to.value - from.value), from.rate + part * (to.rate - from.rate)};
+  }
+};
+
+/// n actions that share a clock, settings and nothing else. Memory: a Mechanism (18 kB) for each different model, a
+/// State (1.6 kB) and 32 bytes to look at for each key, one Workspace (100 kB).
+///
+/// A key falls asleep after SleepSettings::calm_ticks periods in which neither its input nor its state changed, and keeps
+/// its state, force and status. It wakes with the first input that differs from the last one. A piston
+/// that does not reach the key may move as it likes meanwhile. An unstable balance that holds for so many
+/// periods counts as rest. Time goes on for all.
+///
+/// Once built: no heap, no exceptions, no locks. Same inputs, same bits, however the keys are shared out to threads.
+class Keyboard {
+ public:
+  /// @param count  of equal keys
+  Keyboard(const Model& model, int count, const TickSettings& settings, const SleepSettings& sleep = {})
+      : Keyboard(std::span(&model, 1), std::vector<int>(static_cast<std::size_t>(count), 0), settings, sleep) {}
+
+  /// @param models        the different ones, all valid
+  /// @param model_of_key  for each key the number of its model
+  Keyboard(std::span<const Model> models, std::span<const int> model_of_key, const TickSettings& settings,
+           const SleepSettings& sleep = {})
+      : settings_(settings),
+        sleep_(sleep),
+        watch_(model_of_key.size()),
+        force_(model_of_key.size(), 0.0),
+        status_(model_of_key.size(), StepStatus::converged),
+        work_(std::make_unique<Workspace>()) {
+    for (const Model& model : models) mechanism_.push_back(build_mechanism(model));
+    for (const int number : model_of_key) {
+      assert(number >= 0 && number < static_cast<int>(models.size()));
+      key_.push_back({number, rest_state(mechanism_[number], settings.scheme.time_step)});
+    }
+  }
+
+  int size() const noexcept { return static_cast<int>(key_.size()); }
+  const TickSettings& settings() const noexcept { return settings_; }
+
+  /// Advances all keys by one period.
+  /// @param inputs    for each key value and rate at the end of the period; what was given last is where it starts,
+  ///                  {0, 0} the first time
+  /// @param observer  called as observer(key, state, report, force) after each internal step of a key that is awake,
+  ///                  noexcept
+  /// @return force of the finger on each key at the end of the period [N]
+  /// Where an input or a result is not finite, the status of the key says so, its state is left as it was, and the next
+  /// good input goes on from the last good one.
+  template <typename Observer>
+  std::span<const double> tick(std::span<const DriveSample> inputs, Observer&& observer) noexcept {
+    tick_share(0, 1, inputs, *work_, observer);
+    end_tick();
+    return force_;
+  }
+  std::span<const double> tick(std::span<const DriveSample> inputs) noexcept {
+    return tick(inputs, [](int, const State&, const StepReport&, double) noexcept {});
+  }
+
+  /// The same for the keys share, share + shares, share + 2 shares .. only: different shares may be advanced at the same
+  /// time by different threads, each with a Workspace of its own. After the last of them end_tick() moves the clock.
+  template <typename Observer>
+  void tick_share(int share, int shares, std::span<const DriveSample> inputs, Workspace& work,
+                  Observer&& observer) noexcept {
+    assert(inputs.size() == key_.size());
+    const Watch* const watch = watch_.data();
+    for (int k = share; k < size(); k += shares) {
+      if (watch[k].is_asleep && sleeps_on(k, inputs[k])) continue;
+      play(k, inputs[k], work, observer);
+    }
+  }
+  void end_tick() noexcept { ++ticks_; }
+
+  double time() const noexcept { return static_cast<double>(ticks_) * settings_.period; }  // [s]
+  std::span<const double> forces() const noexcept { return force_; }                       // [N]
+  std::span<const StepStatus> statuses() const noexcept { return status_; }  // of the last period each was awake
+  bool is_asleep(int key) const noexcept { return watch_[key].is_asleep; }
+  int asleep_count() const noexcept {
+    return static_cast<int>(std::count_if(watch_.begin(), watch_.end(), [](const Watch& w) { return w.is_asleep; }));
+  }
+
+  const Mechanism& mechanism(int key) const noexcept { return mechanism_[key_[key].mechanism]; }
+
+  /// State of a key now, asleep or not.
+  State state(int key) const noexcept {
+    State now = key_[key].state;
+    now.time = time();
+    return now;
+  }
+
+ private:
+  struct Watch {  // what a resting key is looked at by, close together
+    DriveSample last;
+    double air = 0;  // load of a piston that leaves the sleeper alone, at most [N]
+    bool is_asleep = false;
+  };
+  struct alignas(64) Key {  // no cache line belongs to two of them
+    int mechanism = 0;
+    State state;
+    int calm_ticks = 0;
+    double calm_force = 0;  // of the finger at the first of them [N]
+  };
+
+  bool sleeps_on(int k, const DriveSample& input) noexcept {
+    Watch& watch = watch_[k];
+    if (is_same(input, watch.last)) return true;
+    const double load = piston_load(mechanism(k).model.finger, input);
+    if (!(load <= watch.air && load >= std::numeric_limits<double>::lowest())) return false;
+    watch.last = input;
+    return true;
+  }
+
+  template <typename Observer>
+  void play(int k, const DriveSample& input, Workspace& work, Observer&& observer) noexcept {
+    Watch& watch = watch_[k];
+    Key& key = key_[k];
+    watch.is_asleep = false;
+    key.state.time = time();
+    const bool may_rest = sleep_.is_on && is_still(sleep_, key.state) && is_undisturbed(k, input);
+    State before;
+    if (may_rest) before = key.state;
+    const TickReport report = erard::tick(
+        mechanism_[key.mechanism], settings_, LineInput{watch.last, input, time(), settings_.period}, key.state, work,
+        [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); });
+    force_[k] = report.force;
+    status_[k] = report.status;
+    if (report.status != StepStatus::not_finite) watch.last = input;
+    const bool is_calm = may_rest && report.status == StepStatus::converged && is_unchanged(sleep_, before, key.state);
+    count_calm(k, is_calm);
+  }
+
+  /// Whether the drive of this period is that of the last, or does nothing in both.
+  bool is_undisturbed(int k, const DriveSample& input) const noexcept {
+    const Watch& watch = watch_[k];
+    if (is_same(input, watch.last)) return true;
+    const Finger& finger = mechanism(k).model.finger;
+    const double air = quiet_load(k, 0);
+    return piston_load(finger, watch.last) <= air && piston_load(finger, input) <= air;
+  }
+
+  /// Load up to which a piston leaves a key at rest alone on which the finger presses with `force`.
+  double quiet_load(int k, double force) const noexcept {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (settings_.drive == DriveKind::none) return kInfinity;
+    const Model& model = mechanism(k).model;
+    if (settings_.drive != DriveKind::piston || force > 0 || model.finger.body == kGround) return -kInfinity;
+    return air_load(model, key_[k].state);
+  }
+
+  void count_calm(int k, bool is_calm) noexcept {
+    Key& key = key_[k];
+    if (!is_calm) {
+      key.calm_ticks = 0;
+      return;
+    }
+    if (key.calm_ticks == 0 || std::abs(force_[k] - key.calm_force) > sleep_.force) {
+      key.calm_ticks = 0;
+      key.calm_force = force_[k];
+    }
+    if (++key.calm_ticks < sleep_.calm_ticks) return;
+    key.calm_ticks = 0;
+    watch_[k].is_asleep = true;
+    watch_[k].air = quiet_load(k, force_[k]);
+  }
+
+  TickSettings settings_;
+  SleepSettings sleep_;
+  long ticks_ = 0;
+  std::vector<Mechanism> mechanism_;  // one for each model
+  std::vector<Watch> watch_;          // one for each key, as all that follow
+  std::vector<Key> key_;
+  std::vector<double> force_;  // [N]
+  std::vector<StepStatus> status_;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace erard
