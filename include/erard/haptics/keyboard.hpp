@@ -53,7 +53,9 @@ class Keyboard {
     for (const Model& model : models) mechanism_.push_back(build_mechanism(model));
     for (const int number : model_of_key) {
       assert(number >= 0 && number < static_cast<int>(models.size()));
-      key_.push_back({number, rest_state(mechanism_[number], settings.scheme.time_step)});
+      Key& key = key_.emplace_back();
+      key.mechanism = number;
+      key.state = rest_state(mechanism_[number], settings.scheme.time_step);
     }
   }
 
@@ -118,8 +120,9 @@ class Keyboard {
   struct alignas(64) Key {  // no cache line belongs to two of them
     int mechanism = 0;
     State state;
-    int calm_ticks = 0;
-    double calm_force = 0;  // of the finger at the first of them [N]
+    int calm_ticks = 0;     // so far
+    State rest;             // at the first of them
+    double rest_force = 0;  // of the finger, then [N]
   };
 
   bool sleeps_on(int k, const DriveSample& input) noexcept {
@@ -137,51 +140,49 @@ class Keyboard {
     Key& key = key_[k];
     watch.is_asleep = false;
     key.state.time = time();
-    const bool may_rest = sleep_.is_on && is_still(sleep_, key.state) && is_undisturbed(k, input);
-    State before;
-    if (may_rest) before = key.state;
+    const bool is_undisturbed = is_same(input, watch.last) || is_in_air(k, watch.last, input);
     const TickReport report = erard::tick(
         mechanism_[key.mechanism], settings_, LineInput{watch.last, input, time(), settings_.period}, key.state, work,
         [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); });
     force_[k] = report.force;
     status_[k] = report.status;
     if (report.status != StepStatus::not_finite) watch.last = input;
-    const bool is_calm = may_rest && report.status == StepStatus::converged && is_unchanged(sleep_, before, key.state);
-    count_calm(k, is_calm);
+    if (sleep_.is_on) fall_asleep(k, is_undisturbed && report.status == StepStatus::converged);
   }
 
-  /// Whether the drive of this period is that of the last, or does nothing in both.
-  bool is_undisturbed(int k, const DriveSample& input) const noexcept {
-    const Watch& watch = watch_[k];
-    if (is_same(input, watch.last)) return true;
+  /// Whether the drive of this period does nothing from one end to the other.
+  bool is_in_air(int k, const DriveSample& from, const DriveSample& to) const noexcept {
     const Finger& finger = mechanism(k).model.finger;
-    const double air = quiet_load(k, 0);
-    return piston_load(finger, watch.last) <= air && piston_load(finger, input) <= air;
+    const double air = quiet_load(k);
+    return piston_load(finger, from) <= air && piston_load(finger, to) <= air;
   }
 
-  /// Load up to which a piston leaves a key at rest alone on which the finger presses with `force`.
-  double quiet_load(int k, double force) const noexcept {
+  /// Load up to which a piston leaves the key alone where it is; none does where something else drives it.
+  double quiet_load(int k) const noexcept {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (settings_.drive == DriveKind::none) return kInfinity;
     const Model& model = mechanism(k).model;
-    if (settings_.drive != DriveKind::piston || force > 0 || model.finger.body == kGround) return -kInfinity;
+    if (settings_.drive != DriveKind::piston || model.finger.body == kGround) return -kInfinity;
     return air_load(model, key_[k].state);
   }
 
-  void count_calm(int k, bool is_calm) noexcept {
+  /// Counts ticks at rest. @param is_calm  nothing but the state itself speaks against it
+  void fall_asleep(int k, bool is_calm) noexcept {
     Key& key = key_[k];
-    if (!is_calm) {
+    if (!is_calm || !is_still(sleep_, key.state)) {
       key.calm_ticks = 0;
       return;
     }
-    if (key.calm_ticks == 0 || std::abs(force_[k] - key.calm_force) > sleep_.force) {
+    if (key.calm_ticks == 0 || !is_same_rest(sleep_, key.rest, key.state) ||
+        !(std::abs(force_[k] - key.rest_force) <= sleep_.force)) {
       key.calm_ticks = 0;
-      key.calm_force = force_[k];
+      key.rest = key.state;
+      key.rest_force = force_[k];
     }
-    if (++key.calm_ticks < sleep_.calm_ticks) return;
+    if (++key.calm_ticks <= sleep_.calm_ticks) return;
     key.calm_ticks = 0;
     watch_[k].is_asleep = true;
-    watch_[k].air = quiet_load(k, force_[k]);
+    watch_[k].air = force_[k] <= sleep_.force ? quiet_load(k) : -std::numeric_limits<double>::infinity();
   }
 
   TickSettings settings_;

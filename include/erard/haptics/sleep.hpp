@@ -4,20 +4,23 @@
 #include <cmath>
 
 #include "erard/haptics/finger.hpp"
+#include "erard/mechanics/state.hpp"
 
 namespace erard {
 
-/// What counts as rest. Under dry friction an action does not creep to a stop, it stops: within 0.15 s of the last touch
-/// the grand action's coordinates do not change by a bit any more, its rates are below 1e-14 rad/s, the force of the finger
-/// moves by less than 1e-16 N a tick, and only felts that were left behind go on relaxing. The bounds stand two
-/// decades and more above that noise and are far below what a force could show.
+/// What counts as rest: for a while nothing differs from what it was at its first instant by more than this. Under dry
+/// friction an action does not creep to a stop, it stops: the grand action's angles keep every bit then, its felts, where
+/// they have mass, jitter by 1e-18 m, rates by 1e-14 rad/s, the force of the finger by 1e-15 N; only felts that were left
+/// behind go on relaxing. The bounds stand above that noise and far below what a force could show.
 struct SleepSettings {
   bool is_on = true;
-  int calm_ticks = 20;         // so many in a row without change: a body at the top of its flight has none for one
-  double rate = 1e-12;         // of any coordinate, at most [rad/s] or [m/s]
-  double force = 1e-10;        // change of the finger's force since the first calm tick, at most [N]
-  double reaction = 1e-12;     // change of any row's reaction in a tick, at most [N], hinges [N m]
-  double compression = 1e-14;  // change of any massless felt in a tick, at most [m]
+  int calm_ticks = 20;  // for so many: a body at the top of its flight has no rate for one
+  double rate = 1e-12;  // of any coordinate, at most [rad/s] or [m/s]
+  double coordinate =
+      1e-17;                // change of any, at most [rad] or [m]: none at all from 0.13 on, where doubles are coarser
+  double force = 1e-10;     // the same, of the finger [N]
+  double reaction = 1e-11;  // of any row [N], hinges [N m]
+  double compression = 1e-13;  // of any massless felt [m]
 };
 
 /// Whether all rates are those of something at rest.
@@ -27,15 +30,19 @@ inline bool is_still(const SleepSettings& settings, const State& state) noexcept
   return true;
 }
 
-/// Whether a tick left the state as it was: every coordinate to the last bit, so that a creep too slow for a double is
-/// none in the engine either; the rest of the state within the bounds.
-inline bool is_unchanged(const SleepSettings& settings, const State& before, const State& after) noexcept {
-  if (before.x != after.x || before.time_step != after.time_step || !is_still(settings, after)) return false;
-  for (int i = 0; i < after.compression.size(); ++i)
-    if (!(std::abs(after.compression[i] - before.compression[i]) <= settings.compression)) return false;
-  for (int i = 0; i < after.impulse.size(); ++i)
-    if (!(std::abs(after.impulse[i] - before.impulse[i]) <= settings.reaction * after.time_step)) return false;
+/// Whether no element of two vectors differs by more than `bound`; false where one is not a number.
+template <typename Vector>
+bool is_near(const Vector& one, const Vector& other, double bound) noexcept {
+  for (int i = 0; i < one.size(); ++i)
+    if (!(std::abs(one[i] - other[i]) <= bound)) return false;
   return true;
+}
+
+/// Whether two states of one mechanism, some time apart, are the same rest.
+inline bool is_same_rest(const SleepSettings& settings, const State& one, const State& other) noexcept {
+  return one.time_step == other.time_step && is_near(one.x, other.x, settings.coordinate) &&
+         is_near(one.compression, other.compression, settings.compression) &&
+         is_near(one.impulse, other.impulse, settings.reaction * one.time_step);
 }
 
 /// Whether two samples are the same drive.
