@@ -43,9 +43,10 @@ struct Scene {
   double worst = 0;  // difference of the force of any key [N]
   long slept = 0;    // periods times keys
 };
-Scene play(const ActionFile& action, const std::vector<Part>& parts, double duration, const TickSettings& settings) {
+Scene play(const ActionFile& action, const std::vector<Part>& parts, double duration, const TickSettings& settings,
+           const SleepSettings& sleep = {}) {
   const int keys = static_cast<int>(parts.size());
-  Keyboard sleepy(action.model, keys, settings), awake(action.model, keys, settings, kAwake);
+  Keyboard sleepy(action.model, keys, settings, sleep), awake(action.model, keys, settings, kAwake);
   std::vector<DriveSample> inputs;
   Scene scene;
   while (awake.time() < duration) {
@@ -93,6 +94,18 @@ TEST(Keyboard, SleepChangesNoForceOfManyKeys) {
   const Scene scene = play(test::grand_action(), parts, 2, settings_of(1));
   EXPECT_LE(scene.worst, kSameForce);
   EXPECT_GT(scene.slept, 6 * 3900);  // the six untouched ones, and the others now and then
+}
+
+TEST(Keyboard, EagerSleepIsLongerAndStillMovesNoForceByAMicronewton) {
+  const ActionFile action = test::grand_action();
+  const Keystroke forte = test::keystroke("forte");
+  const std::vector<Part> parts{{&forte, 0.1, 1.2}};
+  const TickSettings settings = settings_of(4);  // its second rest creeps
+  const Scene strict = play(action, parts, 3.6, settings),
+              eager = play(action, parts, 3.6, settings, SleepSettings::eager());
+  EXPECT_GT(eager.slept, strict.slept + 500);
+  EXPECT_LE(eager.worst, 1e-6);
+  EXPECT_GT(eager.worst, 0);
 }
 
 TEST(Keyboard, SleepChangesNoForceUnderAnyDrive) {
