@@ -44,13 +44,13 @@ std::string row_of(const DurationHistogram& time) {
 /// The same arithmetic over and over, about 100 us: whatever varies is not ours.
 DurationHistogram measure_noise(double duration) {
   DurationHistogram histogram;
-  volatile double sink = 0;
+  volatile double seed = 1;  // read and written anew: nothing can be worked out beforehand
   const auto begin = Clock::now();
   while (seconds_since(begin) < duration) {
     const auto start = Clock::now();
-    double x = 1;
-    for (int i = 0; i < 20000; ++i) x = x * 0.999999 + 1e-6;
-    sink = sink + x;
+    double x = seed;
+    for (int i = 0; i < 40000; ++i) x = x * 0.999999 + 1e-6;
+    seed = x;
     histogram.add(seconds_since(start));
   }
   return histogram;
@@ -102,7 +102,7 @@ void print_costs(const Model& model, const Keystroke& keystroke, double duration
       "\n| keys | played | steps a period | threads | awake | p50 us | p99 us | p99.9 us | max us | p99 of 500 us |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int keys : {8, 44, 88})
-    for (const auto& [played, nth] : {std::pair{"none", 0}, {"one in eight", 8}, {"all", 1}})
+    for (const auto& [played, nth] : {std::pair{"none", 0}, {"one in seven", 7}, {"all", 1}})
       for (const int steps : {1, 0})
         for (const int threads : {1, 2}) {
           TickSettings settings;

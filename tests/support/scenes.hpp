@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "support/strokes.hpp"
+#include "strokes.hpp"
 
 namespace erard::test {
 
