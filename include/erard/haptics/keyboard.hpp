@@ -1,6 +1,7 @@
 // Many keys in one period of the host: inputs in, forces out; a key at rest costs a comparison.
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <memory>
@@ -25,13 +26,12 @@ struct LineInput {
   }
 };
 
-/// n actions that share a clock, settings and nothing else. Memory: a Mechanism (18 kB) for each different model, a
-/// State (1.6 kB) and 32 bytes to look at for each key, one Workspace (100 kB).
+/// n actions that share a clock, settings and nothing else. Memory: a Mechanism (18 kB) for each different model, for
+/// each key two States (3.3 kB) and 32 bytes to look at, one Workspace (100 kB).
 ///
 /// A key falls asleep after SleepSettings::calm_ticks periods in which neither its input nor its state changed, and keeps
-/// its state, force and status. It wakes with the first input that differs from the last one. A piston
-/// that does not reach the key may move as it likes meanwhile. An unstable balance that holds for so many
-/// periods counts as rest. Time goes on for all.
+/// its state, force and status; time goes on. It wakes with the first input that differs from the last. A piston that does
+/// not reach the key may move as it likes meanwhile. An unstable balance that holds for so many periods counts as rest.
 ///
 /// Once built: no heap, no exceptions, no locks. Same inputs, same bits, however the keys are shared out to threads.
 class Keyboard {
@@ -68,8 +68,8 @@ class Keyboard {
   /// @param observer  called as observer(key, state, report, force) after each internal step of a key that is awake,
   ///                  noexcept
   /// @return force of the finger on each key at the end of the period [N]
-  /// Where an input or a result is not finite, the status of the key says so, its state is left as it was, and the next
-  /// good input goes on from the last good one.
+  /// Where an input or a result is not finite, the status of the key says so, its state stays as it was, its force is 0
+  /// when no step was taken, and the next good input goes on from the last good one.
   template <typename Observer>
   std::span<const double> tick(std::span<const DriveSample> inputs, Observer&& observer) noexcept {
     tick_share(0, 1, inputs, *work_, observer);
