@@ -78,7 +78,7 @@ TEST_P(EveryScheme, SleepChangesNoForceOfAnyScene) {
   };
   for (const Case& c : {Case{"untouched", {}, 0.5, 0.9}, Case{"strokes and rests", {&piano, 0.1, 1.2}, 2.5, 0.3},
                         Case{"loud strokes and rests", {&forte, 0.1, 1.2}, 2.5, 0.2},
-                        Case{"held down", {&piano, 0.1, 1.5, 0.15}, 1.5, 0.5},
+                        Case{"held down and let go at once", {&piano, 0.1, 0.8, 0.15}, 2.5, 0.3},
                         Case{"let go between strokes", {&repetition, 0.1, 1.4}, 3, 0.2},
                         Case{"one after the other", {&forte, 0.0, 0.3}, 1.5, 0}}) {
     const Scene scene = play(action, {c.part}, c.duration, settings);
@@ -126,6 +126,32 @@ TEST(Keyboard, SleepChangesNoForceOfFeltsWithMass) {
   const Scene scene = play(test::grand_action(options), {Part{&piano, 0.1, 1.2}}, 2, settings_of(1));
   EXPECT_LE(scene.worst, kSameForce);
   EXPECT_GT(scene.slept, 500);
+}
+
+TEST(Keyboard, EveryPartOfTheStateCountsAgainstRest) {
+  const Mechanism mechanism = build_mechanism(test::grand_action().model);
+  const SleepSettings sleep;
+  const State rest = rest_state(mechanism, 1e-4);
+  EXPECT_TRUE(is_still(sleep, rest));
+  EXPECT_TRUE(is_same_rest(sleep, rest, rest));
+  const auto differs = [&](auto&& change) {
+    State other = rest;
+    change(other);
+    return !is_same_rest(sleep, rest, other) || !is_still(sleep, other);
+  };
+  for (const double factor : {-2.0, 2.0}) {
+    for (int i = 0; i < mechanism.coordinate_count; ++i) {
+      EXPECT_TRUE(differs([&](State& s) { s.v[i] = factor * sleep.rate; }));
+      // by the last bit of an angle where that is more than the bound
+      EXPECT_TRUE(differs([&](State& s) { s.x[i] += factor * std::max(sleep.coordinate, 2e-16 * std::abs(s.x[i])); }));
+    }
+    for (int k = 0; k < mechanism.rows.count; ++k)
+      EXPECT_TRUE(differs([&](State& s) { s.impulse[k] += factor * sleep.reaction * s.time_step; }));
+    for (int c = 0; c < mechanism.contact_count(); ++c)
+      EXPECT_TRUE(differs([&](State& s) { s.compression[c] += factor * sleep.compression; }));
+  }
+  EXPECT_TRUE(differs([](State& s) { s.time_step = 2e-4; }));
+  EXPECT_TRUE(differs([](State& s) { s.compression[0] = std::numeric_limits<double>::quiet_NaN(); }));
 }
 
 TEST(Keyboard, AKeyIsAsIfItWereAlone) {
@@ -207,6 +233,19 @@ TEST(Keyboard, APistonInTheAirWakesNobodyUntilItTouches) {
   EXPECT_GT(sleepy.forces()[0], 0);
 }
 
+TEST(Keyboard, AFingerThatFallsOnASleeperIsFeltAsIfItHadBeenAwake) {
+  const ActionFile action = test::grand_action();
+  Keyboard sleepy(action.model, 1, settings_of(0)), awake(action.model, 1, settings_of(0), kAwake);
+  const auto both = [&](const DriveSample& input) {
+    return std::abs(sleepy.tick({&input, 1})[0] - awake.tick({&input, 1})[0]);
+  };
+  for (int i = 0; i < 100; ++i) both({-1e-3 * i / 100, 0});  // goes up to 1 mm, and stays there
+  both({-1e-3, 0});
+  ASSERT_TRUE(sleepy.is_asleep(0));
+  for (int i = 0; i < 60; ++i) EXPECT_LE(both({std::min(-1e-3 + 2e-4 * i, 6e-3), i < 35 ? 0.4 : 0}), kSameForce) << i;
+  EXPECT_FALSE(sleepy.is_asleep(0));
+}
+
 TEST(Keyboard, ManyTremblingFingersInTheAirLeaveAllKeysAsleep) {
   Keyboard keyboard(test::grand_action().model, 4, settings_of(1));
   std::vector<DriveSample> inputs(4);
@@ -243,6 +282,8 @@ TEST(Keyboard, InputThatIsNotFiniteConcernsItsOwnKeyAlone) {
     EXPECT_FALSE(keyboard.is_asleep(0));
     EXPECT_TRUE(keyboard.is_asleep(1));
     inputs[0] = {};
+    keyboard.tick(inputs);
+    EXPECT_EQ(keyboard.statuses()[0], StepStatus::converged);  // from the last good input on
     for (int i = 0; i < 50; ++i) keyboard.tick(inputs);
     EXPECT_EQ(keyboard.statuses()[0], StepStatus::converged);
     EXPECT_TRUE(keyboard.is_asleep(0));

@@ -29,7 +29,7 @@ struct LineInput {
 /// n actions that share a clock, settings and nothing else. Memory: a Mechanism (18 kB) for each different model, for
 /// each key two States (3.3 kB) and 32 bytes to look at, one Workspace (100 kB).
 ///
-/// A key falls asleep after SleepSettings::calm_ticks periods in which neither its input nor its state changed, and keeps
+/// A key falls asleep after SleepSettings::calm_ticks periods in which neither its state nor its force changed, and keeps
 /// its state, force and status; time goes on. It wakes with the first input that differs from the last. A piston that does
 /// not reach the key may move as it likes meanwhile. An unstable balance that holds for so many periods counts as rest.
 ///
@@ -140,21 +140,13 @@ class Keyboard {
     Key& key = key_[k];
     watch.is_asleep = false;
     key.state.time = time();
-    const bool is_undisturbed = is_same(input, watch.last) || is_in_air(k, watch.last, input);
     const TickReport report = erard::tick(
         mechanism_[key.mechanism], settings_, LineInput{watch.last, input, time(), settings_.period}, key.state, work,
         [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); });
     force_[k] = report.force;
     status_[k] = report.status;
     if (report.status != StepStatus::not_finite) watch.last = input;
-    if (sleep_.is_on) fall_asleep(k, is_undisturbed && report.status == StepStatus::converged);
-  }
-
-  /// Whether the drive of this period does nothing from one end to the other.
-  bool is_in_air(int k, const DriveSample& from, const DriveSample& to) const noexcept {
-    const Finger& finger = mechanism(k).model.finger;
-    const double air = quiet_load(k);
-    return piston_load(finger, from) <= air && piston_load(finger, to) <= air;
+    if (sleep_.is_on) fall_asleep(k, report.status == StepStatus::converged);
   }
 
   /// Load up to which a piston leaves the key alone where it is; none does where something else drives it.
@@ -166,10 +158,10 @@ class Keyboard {
     return air_load(model, key_[k].state);
   }
 
-  /// Counts ticks at rest. @param is_calm  nothing but the state itself speaks against it
-  void fall_asleep(int k, bool is_calm) noexcept {
+  /// Counts ticks at rest. The input needs no look: what it does shows in the force, and the next one that differs wakes.
+  void fall_asleep(int k, bool is_converged) noexcept {
     Key& key = key_[k];
-    if (!is_calm || !is_still(sleep_, key.state)) {
+    if (!is_converged || !is_still(sleep_, key.state)) {
       key.calm_ticks = 0;
       return;
     }

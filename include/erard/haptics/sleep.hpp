@@ -14,12 +14,11 @@ namespace erard {
 /// behind go on relaxing. The bounds stand above that noise and far below what a force could show.
 struct SleepSettings {
   bool is_on = true;
-  int calm_ticks = 20;  // for so many: a body at the top of its flight has no rate for one
-  double rate = 1e-12;  // of any coordinate, at most [rad/s] or [m/s]
-  double coordinate =
-      1e-17;                // change of any, at most [rad] or [m]: none at all from 0.13 on, where doubles are coarser
-  double force = 1e-10;     // the same, of the finger [N]
-  double reaction = 1e-11;  // of any row [N], hinges [N m]
+  int calm_ticks = 20;         // long enough: a body at the top of its flight has no rate for one
+  double rate = 1e-12;         // of any coordinate, the first and quickest look [rad/s] or [m/s]
+  double coordinate = 1e-17;   // change of any; of those above 0.07, less than one bit [rad] or [m]
+  double force = 1e-10;        // the same, of the finger [N]
+  double reaction = 1e-11;     // of any row [N], hinges [N m]
   double compression = 1e-13;  // of any massless felt [m]
 
   /// Lets the creep of the solver count as rest. One-step problems are solved to a tolerance, and of some rests, one in
