@@ -14,6 +14,11 @@ if(ERARD_BUILD_DEVICE)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/" DESTINATION "${CMAKE_INSTALL_DATADIR}/erard")
 endif()
 
+if(ERARD_BUILD_SPARSE)
+  install(TARGETS erard_sparse EXPORT erardSparseTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT erardSparseTargets NAMESPACE erard:: DESTINATION "${package_dir}")
+endif()
+
 if(ERARD_BUILD_APPS)
   get_property(programs TARGET erard_programs PROPERTY ERARD_PROGRAMS)
   install(TARGETS ${programs} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
