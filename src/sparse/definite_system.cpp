@@ -1,7 +1,9 @@
 #include "erard/sparse/definite_system.hpp"
 
 #include <amd.h>
-#include <ldl.h>
+extern "C" {
+#include <ldl.h>  // does not say itself that it is C, up to SuiteSparse 5
+}
 
 #include <algorithm>
 #include <cmath>
