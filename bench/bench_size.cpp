@@ -77,6 +77,46 @@ void time_dense(const Problem& problem, Measured& line) {
       });
 }
 
+/// The engine's own functions, up to its bounds.
+void time_in_place(const Problem& problem, Measured& line) {
+  const BranchSystem tree(problem.A);
+  const TriangularFactor& shape = tree.factor();
+  AncestorTable above;
+  above.size = shape.size;
+  for (int k = 0; k < shape.size; ++k)
+    for (int p = shape.start[k]; p < shape.start[k + 1]; ++p)
+      above.list[shape.order[k]][above.count[shape.order[k]]++] = shape.order[shape.row[p]];
+  const CoordinateMatrix A = MatrixXd(problem.A);
+  const MatrixXd H = problem.H;
+  CoordinateMatrix factor = A;
+  CoordinateVector x(shape.size);
+  MatrixXd Y = H;
+  RowMatrix W(H.cols(), H.cols());
+  line.entries = static_cast<long>(shape.row.size());
+  time_parts(
+      line,
+      [&] {
+        factor = A;
+        factorise_branches(above, factor);
+      },
+      [&] {
+        x.setOnes();
+        solve_upwards(above, factor, shape.size - 1, x.data());
+        solve_downwards(above, factor, x.data());
+      },
+      [&] {
+        Y = H;
+        for (int i = 0; i < H.cols(); ++i) {
+          solve_upwards(above, factor, shape.size - 1, Y.col(i).data());
+          for (int j = 0; j <= i; ++j) {
+            double sum = 0;
+            for (int k = 0; k < shape.size; ++k) sum += Y(k, i) * factor(k, k) * Y(k, j);
+            W(i, j) = W(j, i) = sum;
+          }
+        }
+      });
+}
+
 void time_branches(const Problem& problem, Measured& line) {
   const auto start = Clock::now();
   BranchSystem system(problem.A);
@@ -186,8 +226,11 @@ Problem problem_of(const LargeTree& tree) {
 
 std::vector<Measured> measure_all() {
   using Timer = void (*)(const Problem&, Measured&);
-  const std::vector<std::pair<std::string, Timer>> definite{
-      {"dense", time_dense}, {"branches", time_branches}, {"LDL", time_ldl}, {"KLU", time_klu}};
+  const std::vector<std::pair<std::string, Timer>> definite{{"in place", time_in_place},
+                                                            {"dense", time_dense},
+                                                            {"branches", time_branches},
+                                                            {"LDL", time_ldl},
+                                                            {"KLU", time_klu}};
   const std::vector<std::pair<std::string, Timer>> closed{{"dense LU", time_dense_lu}, {"KLU", time_klu}};
   const Keyboards keyboards;
   struct Family {
@@ -208,6 +251,7 @@ std::vector<Measured> measure_all() {
       if (n < family.smallest || n > family.largest) continue;
       const Problem problem = family.make(n);
       for (const auto& [method, time] : *family.methods) {
+        if (time == time_in_place && (problem.A.rows() > kMaxCoordinates || problem.H.cols() > kMaxRows)) continue;
         Measured line;
         line.family = family.name;
         line.method = method;
@@ -271,29 +315,37 @@ void draw_curves(const std::filesystem::path& file, const Curves& curves) {
 
 void print_growth(const Curves& whole, const Curves& factor) {
   fmt::print(
-      "| mechanism | method | exponent of factorise | exponent of all | at most 32 coordinates, all [us] | largest, "
-      "all [us] |\n|---|---|---|---|---|---|\n");
+      "| mechanism | method | factorise grows as n^ | all grows as n^ | all, some 32 coordinates [us] | all, largest "
+      "[us] |\n|---|---|---|---|---|---|\n");
   for (std::size_t f = 0; f < whole.size(); ++f)
     for (std::size_t m = 0; m < whole[f].second.size(); ++m) {
       const auto& [method, growth] = whole[f].second[m];
       double small = 0;
       for (std::size_t i = 0; i < growth.size.size(); ++i)
         if (growth.size[i] <= 32) small = growth.time[i];
-      fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.0f} at {:.0f} |\n", whole[f].first, method,
-                 exponent(factor[f].second[m].second, 128), exponent(growth, 128), 1e6 * small,
-                 1e6 * growth.time.back(), growth.size.back());
+      const auto power = [](const Growth& of) {
+        const double p = exponent(of, 128);
+        return std::isnan(p) ? std::string("-") : fmt::format("{:.2f}", p);
+      };
+      fmt::print("| {} | {} | {} | {} | {:.2f} | {:.3g} at {:.0f} |\n", whole[f].first, method,
+                 power(factor[f].second[m].second), power(growth), 1e6 * small, 1e6 * growth.time.back(),
+                 growth.size.back());
     }
 }
 
 void print_crossovers(const Curves& whole, const Curves& factor) {
   fmt::print("\n| mechanism | from here on | is faster than | factorise | all |\n|---|---|---|---|---|\n");
-  const auto text = [](double size) { return std::isnan(size) ? std::string("never") : fmt::format("{:.0f}", size); };
+  const auto text = [](const Growth& one, const Growth& other) {
+    const double size = crossover(one, other);
+    return std::isnan(size) ? fmt::format("not up to {:.0f}", std::min(one.size.back(), other.size.back()))
+                            : fmt::format("{:.0f}", size);
+  };
   for (std::size_t f = 0; f < whole.size(); ++f)
     for (std::size_t a = 0; a < whole[f].second.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         fmt::print("| {} | {} | {} | {} | {} |\n", whole[f].first, whole[f].second[a].first, whole[f].second[b].first,
-                   text(crossover(factor[f].second[a].second, factor[f].second[b].second)),
-                   text(crossover(whole[f].second[a].second, whole[f].second[b].second)));
+                   text(factor[f].second[a].second, factor[f].second[b].second),
+                   text(whole[f].second[a].second, whole[f].second[b].second));
 }
 
 void print_noise(const std::vector<Measured>& lines) {

@@ -1,6 +1,7 @@
 // How a time grows with a size, and from which size on one method is faster than another.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -26,11 +27,11 @@ inline double exponent(const Growth& growth, double smallest) {
   return n < 3 ? std::numeric_limits<double>::quiet_NaN() : (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// Size from which `one` stays faster than `other`, measured at the same sizes: where the straight lines between the
+/// Size from which `one` stays faster than `other`, measured at the same sizes as far as both go: where the straight lines between the
 /// logarithms cross for the last time; the smallest size when it always is, NaN when it is not at the largest.
 inline double crossover(const Growth& one, const Growth& other) {
   const auto lead = [&](std::size_t i) { return std::log(other.time[i] / one.time[i]); };
-  std::size_t i = one.size.size() - 1;
+  std::size_t i = std::min(one.size.size(), other.size.size()) - 1;
   if (!(lead(i) > 0)) return std::numeric_limits<double>::quiet_NaN();
   while (i > 0 && lead(i - 1) > 0) --i;
   if (i == 0) return one.size.front();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "../bench/branch_system.hpp"
+#include "../bench/growth.hpp"
 #include "../bench/large_tree.hpp"
 #include "erard/mechanics/dynamics.hpp"
 #include "erard/solver/branch_factor.hpp"
@@ -104,6 +105,20 @@ TEST(BranchSystem, HasTheFactorOfTheEngineBitForBit) {
       EXPECT_EQ(ours.value[p], factor(ours.order[k], ours.order[ours.row[p]]));
   }
   EXPECT_GT(entries, kMaxBodies);
+}
+
+TEST(Growth, FindsTheExponentAndTheCrossoverOfPowerLaws) {
+  bench::Growth cube, line;
+  for (const double n : {1.0, 3.0, 10.0, 30.0, 100.0, 300.0}) {
+    cube.size.push_back(n);
+    cube.time.push_back(2e-9 * n * n * n);
+    line.size.push_back(n);
+    line.time.push_back(8e-7 * n);  // n^2 = 400
+  }
+  EXPECT_NEAR(bench::exponent(cube, 3), 3, 1e-12);
+  EXPECT_NEAR(bench::exponent(line, 3), 1, 1e-12);
+  EXPECT_NEAR(bench::crossover(line, cube), 20, 1e-10);
+  EXPECT_TRUE(std::isnan(bench::crossover(cube, line)));
 }
 
 // ---- positive definite
