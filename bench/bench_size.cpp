@@ -243,11 +243,11 @@ std::vector<Measured> measure_all() {
       {"bush", [](int n) { return problem_of(bush(n, 1)); }, &definite, 1, 2000},
       {"keyboard", [&](int n) { return keyboards.of(std::max(1, n / 6)); }, &definite, 6, 2000},
       {"felt stack", [](int n) { return problem_of(felt_stack(n)); }, &definite, 1, 2000},
-      {"chain", [](int n) { return problem_of(chain(n, 1)); }, &definite, 1, 512},
+      {"chain", [](int n) { return problem_of(chain(n, 1)); }, &definite, 1, 529},
       {"linkages", [](int n) { return problem_of(linkages(std::max(1, n / 3), 1)); }, &closed, 3, 1200}};
   std::vector<Measured> lines;
   for (const Family& family : families)
-    for (const int n : {1, 2, 3, 6, 12, 18, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1200, 2000}) {
+    for (const int n : {1, 2, 3, 6, 12, 18, 24, 32, 48, 64, 96, 128, 192, 256, 384, 529, 768, 1200, 2000}) {
       if (n < family.smallest || n > family.largest) continue;
       const Problem problem = family.make(n);
       for (const auto& [method, time] : *family.methods) {
@@ -304,7 +304,7 @@ void draw_curves(const std::filesystem::path& file, const Curves& curves) {
     panel.y = {"shortest time [us]", {0.02, 3e6}, true};
     panel.key = "top left";
     for (const auto& [method, growth] : methods) {
-      study::Curve curve{method, growth.size, {}, "linespoints"};
+      study::Curve curve{method, growth.size, {}, "lines linewidth 2"};
       for (const double time : growth.time) curve.y.push_back(1e6 * time);
       panel.curves.push_back(curve);
     }

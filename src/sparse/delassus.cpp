@@ -58,9 +58,9 @@ const Eigen::MatrixXd& Delassus::update(const TriangularFactor& factor, const Sp
   for (int k = 0; k < factor.size; ++k)
     for (int a = row_start_[k]; a < row_start_[k + 1]; ++a) {
       const double left = value_[entry_[a]] / factor.diagonal[k];
-      for (int b = row_start_[k]; b <= a; ++b) W_(column_[a], column_[b]) += left * value_[entry_[b]];
+      for (int b = row_start_[k]; b <= a; ++b) W_(column_[b], column_[a]) += left * value_[entry_[b]];  // down a column
     }
-  W_.triangularView<Eigen::StrictlyUpper>() = W_.transpose();
+  W_.triangularView<Eigen::StrictlyLower>() = W_.transpose();
   return W_;
 }
 
