@@ -68,7 +68,8 @@ class DefiniteSystem {
 };
 
 /// Relative size of a pivot below which a system of that many coordinates counts as singular: what rounding leaves of a
-/// pivot that is zero, n sums of products with a relative error of eps each, and a factor 4 for those that were not zero.
-inline double least_regular_pivot(int size) noexcept { return 4 * size * std::numeric_limits<double>::epsilon(); }
+/// pivot that is zero, n eps times the condition of what was eliminated before it. That is not known here and taken as 64:
+/// worse-conditioned systems that are singular can pass, regular ones with so small a pivot are refused.
+inline double least_regular_pivot(int size) noexcept { return 64 * size * std::numeric_limits<double>::epsilon(); }
 
 }  // namespace erard
