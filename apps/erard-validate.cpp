@@ -1,12 +1,18 @@
 // erard-validate: the thesis's study again, from the built engine: writes docs/validation.md with its tables and plots.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <mutex>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "erard/device/error.hpp"
@@ -27,9 +33,10 @@ namespace {
 using namespace erard;
 using study::Pictures;
 using study::Section;
+namespace fs = std::filesystem;
 
 struct Study {
-  const char* name;  // of its heading's link and for --only
+  const char* name;  // of its anchor and for --only
   Section (*write)(const Pictures&);
 };
 
@@ -47,6 +54,122 @@ constexpr const char* kPreamble =
     "*Non-smooth\n"
     "model of the grand piano action* (2013); numbers in brackets are its equations. Regenerate with\n\n"
     "    build/release/bin/erard-validate --out docs\n";
+constexpr const char* kPictureFolder = "images/validation";
+
+/// Pictures on their way: beside their final folder, until all are drawn.
+class PictureFolder {
+ public:
+  explicit PictureFolder(const fs::path& out)
+      : final_(out / kPictureFolder), part_(fmt::format("{}.part-{}", final_.string(), getpid())) {
+    prepare_output_folder(part_);
+  }
+  ~PictureFolder() {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+
+  const fs::path& path() const { return part_; }
+
+  /// They take the place of all pictures that are there.
+  void publish() const {
+    const fs::path old = part_.string() + "-old";
+    if (fs::exists(final_)) fs::rename(final_, old);
+    fs::rename(part_, final_);
+    fs::remove_all(old);
+  }
+
+  /// Each takes the place of the one of its name.
+  void publish_each() const {
+    fs::create_directories(final_);
+    for (const auto& picture : fs::directory_iterator(part_))
+      fs::rename(picture.path(), final_ / picture.path().filename());
+  }
+
+ private:
+  fs::path final_, part_;
+};
+
+std::mutex ending;  // held by who ends the program: a signal, an error, or the publication, which is not interrupted
+
+/// Ends the program on Ctrl-C and the like, at once and without leaving anything behind: a section takes up to a minute.
+/// The signals are blocked everywhere but here, where they are waited for.
+void end_on_signal(const fs::path& unfinished, const sigset_t& signals) {
+  std::thread([unfinished, signals] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    const std::lock_guard lock(ending);
+    std::error_code ignored;
+    while (fs::exists(unfinished, ignored)) fs::remove_all(unfinished, ignored);
+    std::_Exit(128 + signal);
+  }).detach();
+}
+
+sigset_t block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+std::string names_of_all() {
+  std::vector<std::string> names;
+  for (const Study& study : kStudies) names.emplace_back(study.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Those asked for, in the order of the document. Throws InputError for a name that is none.
+std::vector<Study> choose_studies(const std::vector<std::string>& only) {
+  const auto has_name = [](const std::string& name) { return [&name](const Study& s) { return s.name == name; }; };
+  for (const std::string& name : only)
+    if (std::none_of(kStudies.begin(), kStudies.end(), has_name(name)))
+      throw InputError(fmt::format("--only {}: no such section; there are {}", name, names_of_all()));
+  std::vector<Study> chosen = kStudies;
+  std::erase_if(chosen, [&](const Study& study) {
+    return !only.empty() && std::find(only.begin(), only.end(), study.name) == only.end();
+  });
+  return chosen;
+}
+
+using Written = std::pair<Study, Section>;
+
+std::vector<Written> write_sections(const std::vector<Study>& studies, const Pictures& pictures) {
+  std::vector<Written> sections;
+  for (const Study& study : studies) {
+    fmt::print(stderr, "{} of {}: {} ...", sections.size() + 1, studies.size(), study.name);
+    const auto start = std::chrono::steady_clock::now();
+    sections.emplace_back(study, study.write(pictures));
+    fmt::print(stderr, " {:.1f} s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return sections;
+}
+
+/// Table of contents with what came out, and all numbers of the thesis that are contradicted.
+std::string summary(const std::vector<Written>& sections) {
+  std::vector<std::vector<std::string>> contents, contradicted;
+  for (const auto& [study, section] : sections) {
+    contents.push_back({fmt::format("[{}](#{})", section.title, study.name), section.result});
+    for (const study::Contradiction& c : section.contradictions)
+      contradicted.push_back(
+          {fmt::format("[{}](#{})", study.name, study.name), c.quantity, c.printed, c.computed, c.difference, c.why});
+  }
+  return "\n" + study::table({"section", "what came out"}, contents) +
+         fmt::format(
+             "\n## Printed numbers that do not come out\nAll {} numbers of the thesis that a computed value "
+             "contradicts by more than {:.0f} %: recomputed from\nits own definitions and other numbers, or "
+             "played on this action.\n\n",
+             contradicted.size(), 100 * study::kContradiction) +
+         study::table({"section", "quantity", "printed", "computed", "difference", "why"}, contradicted);
+}
+
+std::string text_of(const std::vector<Written>& sections) {
+  std::string text;
+  for (const auto& [study, section] : sections)
+    text += fmt::format("\n## <a id=\"{}\"></a>{}\n{}", study.name, section.title, section.text);
+  return text;
+}
 
 }  // namespace
 
@@ -57,35 +180,41 @@ int main(int argc, char** argv) try {
   std::string out = "docs";
   std::vector<std::string> only;
   app.add_option("--out", out, "folder for validation.md and images/validation/")->capture_default_str();
-  app.add_option("--only", only, "print these sections on the terminal and write only their pictures")->delimiter(',');
-  app.footer("Exit codes: 0 done, 1 failed, 2 wrong arguments. Needs gnuplot.");
+  app.add_option(
+         "--only", only,
+         "print these sections on the terminal and write only their pictures; names with commas of: " + names_of_all())
+      ->delimiter(',');
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong arguments, 128 + n ended by signal n. Needs gnuplot.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
-  const Pictures pictures{std::filesystem::path(out) / "images" / "validation", "images/validation"};
-  std::filesystem::create_directories(pictures.folder);
-  std::string document = kPreamble;
-  for (const Study& study : kStudies) {
-    if (!only.empty() && std::find(only.begin(), only.end(), study.name) == only.end()) continue;
-    fmt::print(stderr, "{} ...\n", study.name);
-    const Section section = study.write(pictures);
-    document += fmt::format("\n## {}\n{}", section.title, section.text);
-  }
+  const std::vector<Study> studies = choose_studies(only);
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    throw std::runtime_error("gnuplot, which draws the plots, is not installed");
+  const sigset_t signals = block_signals();
+  const PictureFolder pictures(out);
+  end_on_signal(pictures.path(), signals);
+  const std::vector<Written> sections = write_sections(studies, {pictures.path(), kPictureFolder});
+  const std::lock_guard lock(ending);
   if (!only.empty()) {
-    fmt::print("{}", document);
+    fmt::print("{}{}", kPreamble, text_of(sections));
+    pictures.publish_each();
     return 0;
   }
-  OutputFile file(std::filesystem::path(out) / "validation.md");
-  file.write(document);
-  file.commit();
+  OutputFile document(fs::path(out) / "validation.md");
+  document.write(kPreamble + summary(sections) + text_of(sections));
+  document.close();
+  pictures.publish();
+  document.publish();
   return 0;
-} catch (const InputError& error) {
+} catch (const erard::InputError& error) {
   fmt::print(stderr, "erard-validate: {}\n", error.what());
   return 2;
 } catch (const std::exception& error) {
+  const std::lock_guard lock(ending);  // what fails because a signal takes its folder away is no error
   fmt::print(stderr, "erard-validate: {}\n", error.what());
   return 1;
 }

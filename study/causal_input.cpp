@@ -8,9 +8,9 @@
 #include <memory>
 #include <random>
 
-#include "erard/device/config_dir.hpp"
 #include "erard/haptics/events.hpp"
 #include "erard/mechanics/rest.hpp"
+#include "study/defaults.hpp"
 
 namespace erard::study {
 namespace {
@@ -129,7 +129,7 @@ const std::vector<Candidate>& all_candidates() {
 }
 
 OfflineRun play_offline(const ActionFile& action, const std::string& name, double from, double until) {
-  OfflineRun run{name, read_keystroke(config_dir() / "keystrokes" / (name + ".csv")), from, until, {}, 0};
+  OfflineRun run{name, default_keystroke(name), from, until, {}, 0};
   run.force = play(
       action, Offline{&run.keystroke}, from, until, [](double) {}, run.hammer_speed);
   return run;

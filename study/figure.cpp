@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <stdexcept>
 
 namespace erard::study {
@@ -40,7 +44,87 @@ void add_axis(std::string& script, const char* name, const Axis& axis) {
     script += fmt::format("set {}range [{}:{}]\n", name, axis.range.first, axis.range.second);
 }
 
-void add_panel(std::string& script, const Panel& panel) {
+/// A point in pixels, but for where the axes begin; not finite where it is not shown.
+struct Place {
+  double x = 0, y = 0;
+};
+struct Scale {
+  Axis axis;
+  double pixels;     // of the axis
+  double low, high;  // its ends
+
+  double place(double value) const {
+    const auto at = [this](double v) { return axis.is_logarithmic ? std::log(v) : v; };
+    return pixels * (at(value) - at(low)) / (at(high) - at(low));
+  }
+};
+
+Scale scale_of(const Axis& axis, double pixels, const std::vector<Curve>& curves, std::vector<double> Curve::*values) {
+  Scale scale{axis, pixels, axis.range.first, axis.range.second};
+  if (scale.low != scale.high) return scale;
+  scale.low = INFINITY, scale.high = -INFINITY;
+  for (const Curve& curve : curves)
+    for (const double v : curve.*values)
+      if (std::isfinite(v)) scale.low = std::min(scale.low, v), scale.high = std::max(scale.high, v);
+  return scale;
+}
+
+/// Marks the points between `first` and `last` that a polygon through those marked would miss by more than can be seen
+/// (Ramer, Douglas, Peucker).
+void mark_corners(const std::vector<Place>& at, std::size_t first, std::size_t last, std::vector<bool>& is_kept) {
+  constexpr double kInvisible = 0.2;  // [px]
+  const double dx = at[last].x - at[first].x, dy = at[last].y - at[first].y, length = std::hypot(dx, dy);
+  std::size_t farthest = first;
+  double distance = kInvisible;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const double x = at[i].x - at[first].x, y = at[i].y - at[first].y;
+    const double off = length > 0 ? std::abs(x * dy - y * dx) / length : std::hypot(x, y);
+    if (off > distance) farthest = i, distance = off;
+  }
+  if (farthest == first) return;
+  is_kept[farthest] = true;
+  mark_corners(at, first, farthest, is_kept);
+  mark_corners(at, farthest, last, is_kept);
+}
+
+/// The points of a curve that its picture needs: of lines the corners, of the rest all.
+std::vector<bool> needed_points(const Curve& curve, const Scale& x, const Scale& y) {
+  std::vector<bool> is_kept(curve.x.size(), true);
+  if (curve.style.rfind("lines ", 0) != 0 && curve.style != "lines") return is_kept;
+  std::vector<Place> at;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) at.push_back({x.place(curve.x[i]), y.place(curve.y[i])});
+  const auto is_finite = [&at](std::size_t i) { return std::isfinite(at[i].x) && std::isfinite(at[i].y); };
+  for (std::size_t first = 0; first < at.size(); ++first) {
+    if (!is_finite(first)) continue;
+    std::size_t last = first;
+    while (last + 1 < at.size() && is_finite(last + 1)) ++last;
+    for (std::size_t i = first + 1; i < last; ++i) is_kept[i] = false;
+    mark_corners(at, first, last, is_kept);
+    first = last;
+  }
+  return is_kept;
+}
+
+void add_data(std::string& script, const Curve& curve, const Scale& x, const Scale& y) {
+  const std::vector<bool> is_needed = needed_points(curve, x, y);
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    if (is_needed[i])
+      script += std::isfinite(curve.y[i]) ? fmt::format("{:.6g} {:.6g}\n", curve.x[i], curve.y[i]) : "\n";
+  script += "e\n";
+}
+
+/// gnuplot opens a group for each change of its pen, most of which stay empty.
+void remove_empty_groups(const std::filesystem::path& svg) {
+  std::string text;
+  {
+    std::ifstream in(svg);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  static const std::regex kEmpty("<g fill=\"none\"[^>]*>\\s*</g>\\s*");
+  std::ofstream(svg) << std::regex_replace(text, kEmpty, "");
+}
+
+void add_panel(std::string& script, const Panel& panel, int width, int height) {
   script += fmt::format("set title {}\nset key {}\n", quoted(panel.title), panel.key);
   add_axis(script, "x", panel.x);
   add_axis(script, "y", panel.y);
@@ -50,11 +134,9 @@ void add_panel(std::string& script, const Panel& panel) {
                           curve.label.empty() ? "notitle" : "title " + quoted(curve.label));
   }
   script += '\n';
-  for (const Curve& curve : panel.curves) {
-    for (std::size_t i = 0; i < curve.x.size(); ++i)
-      script += std::isfinite(curve.y[i]) ? fmt::format("{:.6g} {:.6g}\n", curve.x[i], curve.y[i]) : "\n";
-    script += "e\n";
-  }
+  const Scale x = scale_of(panel.x, width, panel.curves, &Curve::x);
+  const Scale y = scale_of(panel.y, height, panel.curves, &Curve::y);
+  for (const Curve& curve : panel.curves) add_data(script, curve, x, y);
 }
 
 }  // namespace
@@ -65,7 +147,7 @@ void draw(const std::filesystem::path& svg, const std::vector<Panel>& panels, in
       "set terminal svg size {},{} dynamic background '#ffffff' font 'sans-serif,12'\nset output {}\n"
       "set grid lc rgb '#dddddd'\nset multiplot layout {},{}\n",
       columns * width, rows * height, quoted(svg.string()), rows, columns);
-  for (const Panel& panel : panels) add_panel(script, panel);
+  for (const Panel& panel : panels) add_panel(script, panel, width, height);
   script += "unset multiplot\n";
 
   std::FILE* gnuplot = popen("gnuplot", "w");
@@ -73,6 +155,7 @@ void draw(const std::filesystem::path& svg, const std::vector<Panel>& panels, in
   const bool is_written = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   if (pclose(gnuplot) != 0 || !is_written)
     throw std::runtime_error(fmt::format("gnuplot could not draw {}; is it installed?", svg.string()));
+  remove_empty_groups(svg);
 }
 
 }  // namespace erard::study

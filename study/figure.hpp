@@ -28,7 +28,7 @@ struct Panel {
   std::string key = "top right";  // where gnuplot puts the key
 };
 
-/// Draws panels side by side, row by row, into an SVG file.
+/// Draws panels side by side, row by row, into an SVG file. Of lines only the points are drawn whose absence would show.
 /// @param width, height  of one panel [px]
 /// Throws std::runtime_error when gnuplot is not installed or fails.
 void draw(const std::filesystem::path& svg, const std::vector<Panel>& panels, int columns = 1, int width = 640,

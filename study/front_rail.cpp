@@ -4,18 +4,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "erard/device/config_dir.hpp"
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
+#include "study/thesis_numbers.hpp"
 
 namespace erard::study {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kStiffness = 1.6e10, kExponent = 2.7;  // of the felt, thesis (4.10)
-
-constexpr double kKeyInertia = 3.36e-3, kArm = 0.245;             // J_1 [kg m^2], L [m], thesis Table 2.1
-const double kRailArm = std::sqrt(kKeyInertia / kKeyMassAtRail);  // where J_1 weighs 62 g: 0.233 m
+using thesis::kArm, thesis::kFeltExponent, thesis::kFeltStiffness;
+constexpr double kKeyInertia = thesis::kInertia[0];  // J_1 [kg m^2]
+/// Where J_1 weighs 62 g: 0.233 m, squared [m^2].
+constexpr double kRailArmSquared = kKeyInertia / kKeyMassAtRail;
 
 /// Time of the extreme of the parabola through three samples, the middle one the extreme of them.
 double vertex(const std::vector<double>& time, const std::vector<double>& value, std::size_t i) {
@@ -52,23 +52,25 @@ Extremes find_extremes(const std::vector<double>& time, const std::vector<double
 }  // namespace
 
 LinearRail linear_rail(double force) noexcept {
-  const double compression = std::pow(force / kStiffness, 1 / kExponent);
+  const double compression = std::pow(force / kFeltStiffness, 1 / kFeltExponent);
   return {compression, rail_stiffness(compression)};
 }
 
 double rail_stiffness(double compression) noexcept {
-  return kStiffness * kExponent * std::pow(compression, kExponent - 1);
+  return kFeltStiffness * kFeltExponent * std::pow(compression, kFeltExponent - 1);
 }
 
 double ringing_frequency(double stiffness, double mass) noexcept { return std::sqrt(stiffness / mass) / (2 * pi); }
+
+double mass_at_rail(double mass) noexcept { return mass * kArm * kArm / kRailArmSquared; }
 
 double ringing_mass(double stiffness, double frequency) noexcept {
   return stiffness / (4 * pi * pi * frequency * frequency);
 }
 
-Oscillation find_oscillation(const std::vector<double>& time, const std::vector<double>& force, double prominence) {
-  std::vector<double> smooth = force;
-  for (std::size_t i = 1; i + 1 < force.size(); ++i) smooth[i] = (force[i - 1] + force[i] + force[i + 1]) / 3;
+Oscillation find_oscillation(const std::vector<double>& time, const std::vector<double>& value, double prominence) {
+  std::vector<double> smooth = value;
+  for (std::size_t i = 1; i + 1 < value.size(); ++i) smooth[i] = (value[i - 1] + value[i] + value[i + 1]) / 3;
   Oscillation oscillation{0, find_extremes(time, smooth, prominence).highest};
   const auto& maxima = oscillation.maxima;
   if (maxima.size() > 1)
@@ -78,11 +80,10 @@ Oscillation find_oscillation(const std::vector<double>& time, const std::vector<
 
 StrokeOscillation stroke_oscillation(const std::string& keystroke, double release) {
   const ActionFile action = default_action();
-  const SampledStroke stroke = play_sampled(action, read_keystroke(config_dir() / "keystrokes" / (keystroke + ".csv")),
-                                            tick_at(DriveKind::piston, 2000));
-  const double check = first_event(stroke.result.events, EventKind::hammer_checked)->time;
+  const PlayedStroke stroke = play(action, default_keystroke(keystroke), tick_at(DriveKind::piston, 2000));
+  const double check = stroke.event(EventKind::hammer_checked).time;
   StrokeOscillation result;
-  for (const Snapshot& row : stroke.rows) {
+  for (const Snapshot& row : stroke.row) {
     if (row.time < check || row.time > release) continue;
     result.time.push_back(row.time);
     result.force.push_back(row.force);
@@ -103,10 +104,10 @@ HeldKey ring_held_key(double force, double mass) {
   const Keystroke hold = sampled_keystroke(KeystrokeQuantity::force, kEnd, 5e-4, [force](double t) {
     return t < kRise ? force * (1 - std::cos(pi * t / kRise)) / 2 : t < kKnock ? force : 1.1 * force;
   });
-  const SampledStroke stroke = play_sampled(action, hold, tick_at(DriveKind::force, 8000));
+  const PlayedStroke stroke = play(action, hold, tick_at(DriveKind::force, 8000));
 
   std::vector<double> time, rail;
-  for (const Snapshot& row : stroke.rows) {
+  for (const Snapshot& row : stroke.row) {
     if (row.time < kKnock) continue;
     time.push_back(row.time);
     rail.push_back(row.normal[static_cast<std::size_t>(action.roles.front_rail)]);
@@ -120,8 +121,7 @@ HeldKey ring_held_key(double force, double mass) {
                                  extremes.lowest.empty() ? 0 : extremes.lowest.back());
     held.frequency = static_cast<double>(count) / (2 * (last - kKnock));
   }
-  const double at_rail = (kKeyInertia + mass * kArm * kArm) / (kRailArm * kRailArm);
-  held.predicted = ringing_frequency(linear_rail(held.rail).stiffness, at_rail);
+  held.predicted = ringing_frequency(linear_rail(held.rail).stiffness, kKeyMassAtRail + mass_at_rail(mass));
   return held;
 }
 

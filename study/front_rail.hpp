@@ -28,14 +28,17 @@ double ringing_mass(double stiffness, double frequency) noexcept;
 
 inline constexpr double kKeyMassAtRail = 0.062;  // m_eq without the player, thesis 6.4.1 [kg]
 
-/// Mean interval of the maxima of a force that oscillates, as a frequency.
-/// A maximum counts when the force, averaged over three samples, falls by `prominence` [N] on both sides of it; its
+/// What a mass at the finger weighs at the rail, where the key's inertia J_1 weighs 62 g [kg].
+double mass_at_rail(double mass) noexcept;
+
+/// Mean interval of the maxima of a value that oscillates, as a frequency.
+/// A maximum counts when the value, averaged over three samples, falls by `prominence` on both sides of it; its
 /// time is that of the parabola through three of these. The average takes out kinks of a millisecond that contacts leave.
 struct Oscillation {
   double frequency = 0;        // [Hz]; 0 with fewer than two maxima
   std::vector<double> maxima;  // times [s]
 };
-Oscillation find_oscillation(const std::vector<double>& time, const std::vector<double>& force, double prominence);
+Oscillation find_oscillation(const std::vector<double>& time, const std::vector<double>& value, double prominence);
 
 /// The finger force of a recorded stroke from the check of the hammer to the release of the key.
 /// @param keystroke  name in config/keystrokes; @param release [s]

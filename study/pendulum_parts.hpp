@@ -49,7 +49,11 @@ void draw_pendulum_errors(const std::filesystem::path& svg);       // Figure 5.1
 void draw_pendulum_rest(const std::filesystem::path& svg);         // sticking angle and the minute after
 void draw_pendulum_cases(const std::filesystem::path& svg);        // Figures 5.3 to 5.8
 
-/// Table of the numbers and statements of thesis 5.1 and 5.2 that do not come out as printed.
-std::string pendulum_contradictions();
+/// What thesis 5.1 and 5.2 say and what does not come out so. (Upsilon of the bodies: thesis_tables.)
+struct PendulumClaims {
+  std::vector<Contradiction> numbers;
+  std::vector<std::vector<std::string>> statements;  // where, printed, computed, why
+};
+PendulumClaims check_pendulum_claims();
 
 }  // namespace erard::study

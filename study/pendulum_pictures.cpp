@@ -14,32 +14,6 @@ using std::filesystem::path;
 
 constexpr const char* kKeyOfErrors = "bottom left Left reverse samplen 2 spacing 0.8";
 
-/// Keeps the points between `first` and `last` that a polygon through the kept ones would miss by more than the
-/// tolerance (Ramer, Douglas, Peucker; distance along y).
-void keep_corners(const Curve& curve, std::size_t first, std::size_t last, double tolerance, Curve& kept) {
-  std::size_t farthest = first;
-  double distance = tolerance;
-  for (std::size_t i = first + 1; i < last; ++i) {
-    const double part = (curve.x[i] - curve.x[first]) / (curve.x[last] - curve.x[first]);
-    const double off = std::abs(curve.y[i] - curve.y[first] - part * (curve.y[last] - curve.y[first]));
-    if (off > distance) farthest = i, distance = off;
-  }
-  if (farthest != first) {
-    keep_corners(curve, first, farthest, tolerance, kept);
-    keep_corners(curve, farthest, last, tolerance, kept);
-    return;
-  }
-  kept.x.push_back(curve.x[last]);
-  kept.y.push_back(curve.y[last]);
-}
-
-Curve thinned(const Curve& curve) {
-  constexpr double kInvisible = 0.003;  // [rad] half a pixel
-  Curve kept{curve.label, {curve.x.front()}, {curve.y.front()}, curve.style};
-  keep_corners(curve, 0, curve.x.size() - 1, kInvisible, kept);
-  return kept;
-}
-
 Curve exact_curve(double upsilon, PendulumState start) {
   const ExactPendulum exact(upsilon, start);
   Curve curve{"exact", {}, {}, "lines lw 5 lc rgb '#bbbbbb'"};
@@ -48,7 +22,7 @@ Curve exact_curve(double upsilon, PendulumState start) {
     curve.x.push_back(kPendulumPeriods * static_cast<double>(i) / kPoints);
     curve.y.push_back(exact.angle_at(curve.x.back()));
   }
-  return thinned(curve);
+  return curve;
 }
 
 /// Angle against time, every step.
@@ -94,7 +68,7 @@ Panel error_panel(const std::string& title, const std::string& key) {
 Panel regularised_panel(const std::string& title, const PendulumCase& c, std::pair<double, double> range) {
   Panel panel = angle_panel(title, c.upsilon, c.start, range);
   for (const PendulumContestant& who : {kExplicitRow, kLinearlyImplicitRow, kFrictionOnlyRow})
-    panel.curves.push_back(thinned(angle_curve(who.scheme, c, who.name, who.style)));
+    panel.curves.push_back(angle_curve(who.scheme, c, who.name, who.style));
   return panel;
 }
 
@@ -104,7 +78,7 @@ void add_family(Panel& panel, const PendulumScheme& scheme, PendulumCase c, cons
   for (std::size_t i = 0; i < family.size(); ++i) {
     c.steps = family[i];
     const std::string style = format("lines lw 1 lc rgb '{}'", colours[i]);
-    panel.curves.push_back(thinned(angle_curve(scheme, c, format("{} steps", c.steps), style)));
+    panel.curves.push_back(angle_curve(scheme, c, format("{} steps", c.steps), style));
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "erard/device/config_dir.hpp"
 #include "erard/device/output_file.hpp"
+#include "study/defaults.hpp"
 
 namespace erard::study {
 namespace {
@@ -23,7 +23,7 @@ void draw_poses(const std::filesystem::path& svg, const ActionFile& action, cons
                 DriveKind drive, const Box& view, int columns) {
   constexpr double kPixels = 3;   // of draw_svg() [px/mm]
   constexpr double kCaption = 9;  // height of its caption [mm]
-  Scene scene = build_scene(action, load_drawing(config_dir() / "grand_action.yaml"));
+  Scene scene = build_scene(action, load_drawing(default_action_file()));
   scene.view = view;
   const double width = kPixels * (view.right - view.left), height = kPixels * (view.top - view.bottom + kCaption);
   const int rows = (static_cast<int>(poses.size()) + columns - 1) / columns;

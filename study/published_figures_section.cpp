@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "erard/device/config_dir.hpp"
 #include "study/figure.hpp"
 #include "study/published_figures.hpp"
 #include "study/repetition_limit.hpp"
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
 
 namespace erard::study {
 namespace {
@@ -121,8 +120,6 @@ void draw_timing(const Pictures& pictures, const ActionFile& action, const std::
         shapes_panel(action, played)},
        2, 560, 420);
 }
-
-std::string milliseconds(double seconds) { return std::isnan(seconds) ? "" : fmt::format("{:.1f}", kMs * seconds); }
 
 std::string timing_table(const std::vector<PlayedFamily>& played, Quantity quantity, PublishedBand published) {
   std::vector<std::string> head{"hammer [m/s]", "three grands, pressed", "three grands, struck"};
@@ -239,7 +236,7 @@ Section published_figures_section(const Pictures& pictures) {
   for (const StrokeFamily& family : stroke_families()) played.push_back({family, play_family(action, family)});
   std::vector<StrokeTimes> recorded;
   for (const char* name : kRecorded) {
-    const Keystroke keystroke = read_keystroke(config_dir() / "keystrokes" / (std::string(name) + ".csv"));
+    const Keystroke keystroke = default_keystroke(name);
     const TracedStroke stroke = trace_stroke(action, keystroke, DriveKind::piston);
     recorded.push_back(time_stroke(stroke.trace, stroke.events));
   }
@@ -287,7 +284,10 @@ Section published_figures_section(const Pictures& pictures) {
   constexpr double kBlow = 0.046;  // hammer from string at rest [m]
   text += fmt::format(kRepetitionText, kMs * (repetition[0].limit.at.farthest - kBlow),
                       kMs * play_repeated(action, {-2e-3}, 16, kRepeatedStrokes).farthest);
-  return {"Beside published measurements of grands", text};
+  const std::string result = fmt::format(
+      "travel times {} (pressed by a motion) and {} (struck) from those of three grands; repeats {:.1f} times a second",
+      distance_of_travel(played[1]), distance_of_travel(played[2]), repetition[0].limit.rate);
+  return {"Beside published measurements of grands", result, text, {}};
 }
 
 }  // namespace erard::study

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "erard/device/config_dir.hpp"
+#include "study/defaults.hpp"
 #include "study/figure.hpp"
+#include "study/published_curves.hpp"
 #include "study/recordings.hpp"
 
 namespace erard::study {
@@ -15,12 +16,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kRecordedLine = "lines lw 1.6 lc rgb '#b05010'";
 constexpr const char* kModelLine = "lines lw 1.6 lc rgb '#1050a0'";
-
-std::string number(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  const double unit = std::pow(10, digits);
-  return fmt::format("{:.{}f}", std::round(value * unit) / unit + 0.0, digits);  // + 0.0: no -0.0
-}
 
 /// Median and extremes of what is finite.
 struct Spread {
@@ -154,26 +149,15 @@ Panel delay_scatter(const std::vector<RecordingRun>& runs) {
           "top left"};
 }
 
-/// Key bottom after hammer, published for pressed keys of three grands: t = factor speed^exponent - offset [ms].
-/// Goebl, Bresin & Galembo, J. Acoust. Soc. Am. 118 (2005), Table I.
-struct PublishedDelay {
-  const char* grand;
-  double factor, exponent, offset;
-  const char* style;
-};
-constexpr PublishedDelay kPublished[] = {
-    {"Steinway C, published", 19.09, -0.3936, 12.30, "lines lc rgb '#444444'"},
-    {"Yamaha, published", 14.63, -0.4158, 11.05, "lines dt 2 lc rgb '#444444'"},
-    {"Boesendorfer, published", 11.59, -0.4497, 9.98, "lines dt 3 lc rgb '#444444'"}};
-
 Panel delay_over_speed(const std::vector<RecordingRun>& runs) {
   Panel panel{
       "Key bottom after hammer, over its mean speed", {"hammer [m/s]", {0, 3}}, {"[ms]", {-2, 12}}, {}, "top right"};
-  for (const PublishedDelay& published : kPublished) {
-    Curve curve{published.grand, {}, {}, published.style};
+  for (const PublishedGrand& grand : published_grands()) {
+    const auto dashes = panel.curves.size() + 1;
+    Curve curve{std::string(grand.name) + ", published", {}, {}, fmt::format("lines dt {} lc rgb '#444444'", dashes)};
     for (double speed = 0.4; speed <= 3; speed += 0.1) {
       curve.x.push_back(speed);
-      curve.y.push_back(published.factor * std::pow(speed, published.exponent) - published.offset);
+      curve.y.push_back(1e3 * grand.bottom[static_cast<std::size_t>(Touch::pressed)].at(speed));
     }
     panel.curves.push_back(curve);
   }
@@ -198,15 +182,15 @@ std::string strike_table(const std::vector<RecordingRun>& runs, const SlowPress&
     for (std::size_t i = 0; i < run.strikes.size(); ++i) {
       const StrikePair& s = run.strikes[i];
       rows.push_back({run.recording.substr(0, 2) + (run.strikes.size() > 1 ? fmt::format(", {}", i + 1) : ""),
-                      number(s.recorded.time * 1e3, 1),
-                      fmt::format("{}, {}", number(s.recorded.from, 2), number(s.predicted.from, 2)),
-                      fmt::format("{}, {}", number(s.recorded.mean_speed, 2), number(s.predicted.mean_speed, 2)),
-                      number(s.predicted.mean_speed / s.recorded.mean_speed, 2),
-                      fmt::format("{}, {}", number(s.recorded.peak_speed, 2), number(s.predicted.peak_speed, 2)),
-                      number(s.predicted.peak_speed / s.recorded.peak_speed, 2),
-                      fmt::format("{}, {}", number(s.recorded_delay() * 1e3, 1), number(s.predicted_delay() * 1e3, 1)),
-                      number((s.predicted_delay() - s.recorded_delay()) * 1e3, 1),
-                      number(-slow.lead * blow / s.predicted.mean_speed * 1e3, 1)});
+                      fixed(s.recorded.time * 1e3, 1),
+                      fmt::format("{}, {}", fixed(s.recorded.from, 2), fixed(s.predicted.from, 2)),
+                      fmt::format("{}, {}", fixed(s.recorded.mean_speed, 2), fixed(s.predicted.mean_speed, 2)),
+                      fixed(s.predicted.mean_speed / s.recorded.mean_speed, 2),
+                      fmt::format("{}, {}", fixed(s.recorded.peak_speed, 2), fixed(s.predicted.peak_speed, 2)),
+                      fixed(s.predicted.peak_speed / s.recorded.peak_speed, 2),
+                      fmt::format("{}, {}", fixed(s.recorded_delay() * 1e3, 1), fixed(s.predicted_delay() * 1e3, 1)),
+                      fixed((s.predicted_delay() - s.recorded_delay()) * 1e3, 1),
+                      fixed(-slow.lead * blow / s.predicted.mean_speed * 1e3, 1)});
     }
   return table(
       {"strike", "hammer there [ms]", "lowest in the 60 ms before", "mean speed [m/s]", "ratio", "highest speed [m/s]",
@@ -253,8 +237,8 @@ std::string describe(const std::vector<RecordingRun>& runs, const SlowPress& slo
              "60 to 90 % of its way at {} of the recorded speed, its highest speed is {} of the\n"
              "recorded, and it arrives {} to {} ms later. In the repeated strikes, in which the two hammers do not\n"
              "start from the same place, the first ratio is {}.\n\n",
-             range(first.mean_speed, 2), range(first.peak_speed, 2), number(-first.delay.high * 1e3, 1),
-             number(-first.delay.low * 1e3, 1), range(later.mean_speed, 2)) +
+             range(first.mean_speed, 2), range(first.peak_speed, 2), fixed(-first.delay.high * 1e3, 1),
+             fixed(-first.delay.low * 1e3, 1), range(later.mean_speed, 2)) +
          fmt::format(
              "Two of these differences need no dynamics. In the very slow press the recorded hammer leads the\n"
              "model's by {:.0f} % of the way at the same key, {:.1f} mm at the head; at the speed of each strike that\n"
@@ -263,13 +247,13 @@ std::string describe(const std::vector<RecordingRun>& runs, const SlowPress& slo
              "The mean depends on two readings only. The last plot puts the times among published ones (Goebl,\n"
              "Bresin & Galembo 2005, pressed keys).\n\n",
              slow.lead * 100, slow.lead * blow * 1e3, range(first.recorded_rise, 2),
-             number(first.predicted_rise.middle, 2));
+             fixed(first.predicted_rise.middle, 2));
 }
 
 }  // namespace
 
 Section recordings_section(const Pictures& pictures) {
-  const ActionFile action = load_action(config_dir() / "grand_action.yaml");
+  const ActionFile action = default_action();
   const double blow = measure_hammer_way(action).blow;
   const std::vector<RecordingRun> runs = play_strikes(action, ImportSettings{}.dip);
   const SlowPress slow = slow_press(play_recording(action, kSlowRecording));
@@ -282,14 +266,20 @@ Section recordings_section(const Pictures& pictures) {
        2, 560, 340);
   draw(pictures.folder / "recordings_strikes.svg", {speed_scatter(runs), delay_scatter(runs), delay_over_speed(runs)},
        3, 400, 380);
+  const Ratios first = ratios_of(runs, Which::first);
+  const std::string result =
+      fmt::format("key given, four hammers from rest: {} of the recorded mean speed, there {} to {} ms later",
+                  range(first.mean_speed, 2), fixed(-first.delay.high * 1e3, 1), fixed(-first.delay.low * 1e3, 1));
   return {"Recorded keystrokes: key in, hammer out",
+          result,
           describe(runs, slow, blow) + kCaveats +
               fmt::format("\n![Hammers over time, and over the key in the very slow press]({0}/recordings_hammer.svg)\n"
                           "![Predicted against recorded, every strike]({0}/recordings_strikes.svg)\n\n",
                           pictures.link) +
               "Pairs are recorded, model. Ratio and difference: model over, model less recorded.\n\n" +
               strike_table(runs, slow, blow) + "\nThe four strikes from rest, with another scale of the key:\n\n" +
-              dip_table(action, runs)};
+              dip_table(action, runs),
+          {}};
 }
 
 }  // namespace erard::study

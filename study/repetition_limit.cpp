@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
 
 namespace erard::study {
 namespace {

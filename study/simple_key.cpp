@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/thesis_numbers.hpp"
+
 namespace erard::study::simple {
 namespace {
 
@@ -66,17 +68,17 @@ double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
 KeyParts thesis_parts() {
   KeyParts parts;
-  parts.arm = 0.245;
-  parts.alpha21 = 0.129 / 0.060;                  // l12 / l21
-  parts.alpha31 = parts.alpha21 * 0.080 / 0.017;  // l23 / l32
-  parts.inertia = {3.36e-3, 3.97e-4, 1.65e-4};
-  parts.weight = {-0.0155, -0.0103, 0.0133};
+  parts.arm = thesis::kArm;
+  parts.alpha21 = thesis::kL12 / thesis::kL21;
+  parts.alpha31 = parts.alpha21 * thesis::kL23 / thesis::kL32;
+  parts.inertia = thesis::kInertia;
+  parts.weight = thesis::kWeight;
   parts.viscous = {0.022, 4.93e-5, 4.93e-5};
-  parts.key_dry = 0.012;
+  parts.key_dry = thesis::kKeyDry;
   parts.spring = 0.087;
   parts.spring_rest = 0.42;
-  parts.down_force = 0.70;
-  parts.up_force = 0.38;
+  parts.down_force = thesis::kDownForce;
+  parts.up_force = thesis::kUpForce;
   return parts;
 }
 

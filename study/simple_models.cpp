@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "erard/device/config_dir.hpp"
 #include "erard/device/force_curve.hpp"
+#include "study/defaults.hpp"
 
 namespace erard::study::simple {
 namespace {
@@ -149,11 +149,9 @@ Sensitivity sensitivity(Path path, SimpleAction model, const KeyRecord& record, 
 }
 
 SimpleModelsStudy study_simple_models() {
-  const auto config = config_dir();
-  const ActionFile action = load_action(config / "grand_action.yaml");
+  const ActionFile action = default_action();
   const auto record = [&](const char* name, double release) {
-    return record_keystroke(action, read_keystroke(config / "keystrokes" / (std::string(name) + ".csv")), name,
-                            release);
+    return record_keystroke(action, default_keystroke(name), name, release);
   };
   SimpleModelsStudy study;
   // releases of these two files, as in docs/accuracy.md

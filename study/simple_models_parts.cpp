@@ -5,15 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "study/thesis_numbers.hpp"
+
 namespace erard::study::simple {
-namespace {
-
-std::string difference(double printed, double computed) {
-  return fmt::format("{:+.1f}", 100 * (computed / printed - 1));
-}
-
-}  // namespace
-
 std::string parts_table(const SimpleModelsStudy& study) {
   const KeyParts thesis_own = thesis_parts();
   const KeyParts& own = study.parts;
@@ -44,8 +38,8 @@ std::string parts_table(const SimpleModelsStudy& study) {
     const bool has_parts = std::isfinite(row.computed);
     rows.push_back({row.name, fmt::format("{:.4g} {}", row.printed, row.unit),
                     has_parts ? fmt::format("{:.4g}", row.computed) : "",
-                    has_parts ? difference(row.printed, row.computed) : "", fmt::format("{:.4g}", row.ours),
-                    difference(row.printed, row.ours), row.why});
+                    has_parts ? signed_percent(row.computed / row.printed - 1) : "", fmt::format("{:.4g}", row.ours),
+                    signed_percent(row.ours / row.printed - 1), row.why});
   }
   const double middle = 4.25e-3 / own.arm;  // of the key positions over which the touch is weighed [rad]
   const std::string closure = fmt::format(
@@ -55,40 +49,27 @@ kappa (theta - theta_0), is {:.4f} N m in the middle of the press, the static te
 here has a spring beside C_w of the static test.
 )",
       ours.weight + ours.spring * (middle - ours.spring_rest), ours.static_weight);
-  return table({"", "printed", "from Table 2.1 and 2.2", "%", "this action", "%", "why this action differs"}, rows) +
+  return table({"", "printed", "from Table 2.1 and 2.2", "", "this action", "", "why this action differs"}, rows) +
          closure;
 }
 
-std::string contradiction_table() {
+std::vector<Contradiction> contradictions() {
   const KeyParts parts = thesis_parts();
   const SimpleAction model = thesis_action(), printed = thesis_action_with_printed_spring();
-  const double weight = 0.138;  // C_w, Table 2.2
+  const double weight = 0.138;  // C_w, Table 2.2 [N m]
   const double mean = (parts.down_force + parts.up_force) / 2;
   const double lifting = (2 * weight - printed.key.load) / parts.arm;  // the spring's moment at rest turned round
   const double at = 0.8e-3;                                            // y where BH ends, by the text of 2.3 [m]
-  struct Row {
-    const char* quantity;
-    double printed, computed;
-    const char *unit, *why;
-  };
-  const std::array all{
-      Row{"C_w of the parts", weight, equivalents(parts).weight, "N m",
-          "(2.4) with Table 2.1; alpha_31 = 9.88 instead of 10.12 would give it"},
-      Row{"(F_down + F_up) / 2", mean, printed.key.load / parts.arm, "N",
-          "(2.6) with C_w = 0.138 and the spring as printed, on the side of the weights"},
-      Row{"(F_down + F_up) / 2", mean, lifting, "N",
-          "the same with the spring lifting the whippen, as it does; (2.7) holds the spring already"},
-      Row{"y where BH ends", at, parts.arm * model.takeover_angle, "m", "where (2.5) with K = 60 N m reaches F_down"},
-      Row{"K", model.blocked.stiffness, parts.down_force * parts.arm * parts.arm / at, "N m",
-          "L F_down / theta at y = 0.8 mm; K is an average over three strokes"},
-      Row{"b of the punching over that of the felt", 100, model.rail.damping / 5e7, "-",
-          "text of 2.3 against b of (4.9), (4.10)"},
-      Row{"kappa_2", parts.spring, 0.0355, "N m", "Table 4.12, the same spring"}};
-  std::vector<std::vector<std::string>> rows;
-  for (const Row& row : all)
-    rows.push_back({row.quantity, fmt::format("{:.3g} {}", row.printed, row.unit), fmt::format("{:.3g}", row.computed),
-                    difference(row.printed, row.computed), row.why});
-  return table({"quantity", "printed", "computed", "%", "from what, why"}, rows);
+  return contradictions_of(
+      {{"(F_down + F_up) / 2 by (2.6) [N]", mean, printed.key.load / parts.arm,
+        "C_w = 0.138 N m and the spring as printed, on the side of the weights"},
+       {"the same, the spring lifting the whippen as it does [N]", mean, lifting, "(2.7) holds the spring already"},
+       {"y where BH ends, 2.3 [mm]", 1e3 * at, 1e3 * parts.arm * model.takeover_angle,
+        "where (2.5) with K = 60 N m reaches F_down"},
+       {"K of BH, Table 2.2 [N m]", model.blocked.stiffness, parts.down_force * parts.arm * parts.arm / at,
+        "L F_down / theta at y = 0.8 mm; K is an average over three strokes"},
+       {"b of the punching over that of the felt, 2.3 [-]", 100, model.rail.damping / thesis::kFeltDamping,
+        "b of (4.9), (4.10)"}});
 }
 
 }  // namespace erard::study::simple

@@ -10,7 +10,8 @@ namespace erard::study::simple {
 /// Table 2.2, what follows from Table 2.1, and what this action has.
 std::string parts_table(const SimpleModelsStudy& study);
 
-/// Printed numbers of chapter 2 that other printed numbers contradict by more than 2 %.
-std::string contradiction_table();
+/// Printed numbers of chapter 2 that other printed numbers contradict. (C_w of the parts and the whippen's spring:
+/// thesis_tables.)
+std::vector<Contradiction> contradictions();
 
 }  // namespace erard::study::simple

@@ -9,16 +9,12 @@
 #include "study/figure.hpp"
 #include "study/simple_models.hpp"
 #include "study/simple_models_parts.hpp"
+#include "study/thesis_numbers.hpp"
 
 namespace erard::study::simple {
 namespace {
 
 constexpr const char* kPicture = "simple_models.svg";
-
-std::string percent(double part) {
-  const double value = 100 * part;
-  return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0);
-}
 
 // ---- picture
 
@@ -117,7 +113,7 @@ struct Variant {
 
 /// The punching with the losses of its felt alone.
 SimpleAction with_felt_damping(SimpleAction model) {
-  model.rail.damping = 5e7;  // b of thesis (4.10) [N s/m^3]
+  model.rail.damping = thesis::kFeltDamping;
   return model;
 }
 
@@ -275,6 +271,12 @@ Section simple_models_section(const Pictures& pictures) {
   draw_picture(study, pictures.folder / kPicture);
   Section section;
   section.title = "One degree of freedom: why forces have to be compared (chapter 2)";
+  const Verdict piano = judge(study.model, study.piano.record, study.piano.carried);
+  const Verdict forte = judge(study.model, study.forte.record, study.forte.carried);
+  section.result = fmt::format(
+      "one degree of freedom meets the key's motion to {} / {} % (piano / forte) and misses the force by {} / {} %",
+      percent(piano.motion.whole.eta), percent(forte.motion.whole.eta), percent(piano.force.whole.eta),
+      percent(forte.force.whole.eta));
   section.text = summary(study);
   section.text += fmt::format(
       R"(
@@ -288,8 +290,9 @@ difference of its rate. Forces are cut off at the frame; how far they go is in t
   section.text += phase_table(study) + phase_text(study);
   section.text += '\n' + variant_table(study) + variant_text(study);
   section.text += kTable23Text + table_2_3(study) + kTable23Reading;
+  section.contradictions = contradictions();
   section.text += "\n**Parts and equivalents.**\n\n" + parts_table(study) +
-                  "\n**Printed numbers that others contradict by more than 2 %.**\n\n" + contradiction_table();
+                  "\n**Printed numbers that others contradict by more than 2 %.**\n\n" + table(section.contradictions);
   return section;
 }
 

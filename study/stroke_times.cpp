@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/sampled_stroke.hpp"
-#include "study/study_step.hpp"
+#include "study/played_stroke.hpp"
 
 namespace erard::study {
 namespace {
@@ -69,18 +68,15 @@ TracedStroke trace_stroke(const ActionFile& action, const Keystroke& keystroke, 
   const double radius = head.centre.norm();
   const auto hammer = static_cast<std::size_t>(action.roles.hammer), key = static_cast<std::size_t>(model.finger.body);
   TracedStroke stroke;
-  RunSettings settings;
-  settings.tick = tick_at(drive, 1 / kStudyStep, 1);
-  settings.start = keystroke.start();
-  settings.duration = keystroke.end() - keystroke.start();
-  settings.on_row = [&](const Snapshot& row) {
+  const PlayedStroke played = play(action, keystroke, study_tick(drive));
+  for (const Snapshot& row : played.row) {
     stroke.trace.time.push_back(row.time);
     stroke.trace.key.push_back(row.key_position);
     stroke.trace.key_speed.push_back(-model.finger.arm * row.rate[key]);
-    stroke.trace.hammer_speed.push_back(-radius *
-                                        row.rate[hammer]);  // clockwise is up: the head lies left of its pivot
-  };
-  stroke.events = run(action, keystroke, settings).events;
+    // clockwise is up: the head lies left of its pivot
+    stroke.trace.hammer_speed.push_back(-radius * row.rate[hammer]);
+  }
+  stroke.events = played.result.events;
   return stroke;
 }
 

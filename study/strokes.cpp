@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <utility>
 
+#include "study/front_rail.hpp"
 #include "study/rigid_contact.hpp"
 
 namespace erard::study {
@@ -14,22 +14,6 @@ std::size_t index_of(const PlayedStroke& stroke, double time) {
   return static_cast<std::size_t>(&stroke.at(time) - stroke.row.data());
 }
 
-/// Times of the maxima of the key's position between two times that stand out by `least` on both sides [s].
-std::vector<double> maxima_of(const PlayedStroke& stroke, double from, double until, double least) {
-  std::vector<double> times;
-  bool is_rising = true;
-  const Snapshot* turn = &stroke.at(from);  // the highest row of a rise, the lowest of a fall
-  for (const Snapshot* row = turn; row <= &stroke.at(until); ++row) {
-    const double beyond = (is_rising ? 1 : -1) * (row->key_position - turn->key_position);
-    if (beyond > 0) turn = row;
-    if (beyond > -least) continue;
-    if (is_rising && turn->time > from + 0.5 * kStudyStep) times.push_back(turn->time);  // not where it begins
-    is_rising = !is_rising;
-    turn = row;
-  }
-  return times;
-}
-
 }  // namespace
 
 DrivenStroke drive_both_ways(const StrokeCase& stroke) {
@@ -37,8 +21,8 @@ DrivenStroke drive_both_ways(const StrokeCase& stroke) {
   const double end = stroke.release + kAfterRelease;
   DrivenStroke result;
   result.stroke = stroke;
-  result.by_position = play(default_action(), default_keystroke(stroke.name), DriveKind::piston, end);
-  result.by_force = play(default_action(), force_of(result.by_position), DriveKind::force, end);
+  result.by_position = play(default_action(), default_keystroke(stroke.name), study_tick(DriveKind::piston), end);
+  result.by_force = play(default_action(), force_of(result.by_position), study_tick(DriveKind::force), end);
   return result;
 }
 
@@ -82,31 +66,27 @@ RailOscillation rail_oscillation(const ActionFile& action, const PlayedStroke& s
   constexpr double kLeast = 5e-6;  // [m] above the ripple of hammer and backcheck
   const auto rail = static_cast<std::size_t>(action.roles.front_rail);
   RailOscillation result;
-  double rows = 0;
+  ForceCurve key;
   for (const Snapshot& row : stroke.row) {
     if (row.time < from || row.time > until) continue;
     result.mean_force += row.force;
     result.compression += row.compression[rail];
-    ++rows;
+    key.time.push_back(row.time);
+    key.force.push_back(row.key_position);
   }
+  const auto rows = static_cast<double>(key.time.size());
   result.mean_force /= rows;
   result.compression /= rows;
-  const std::vector<double> maxima = maxima_of(stroke, from, until, kLeast);
-  if (maxima.size() > 1) result.frequency = static_cast<double>(maxima.size() - 1) / (maxima.back() - maxima.front());
+  result.frequency = find_oscillation(key.time, key.force, kLeast).frequency;
   return result;
-}
-
-double linear_rail_frequency(double force) {
-  constexpr double kStiffness = 1.6e10, kExponent = 2.7, kMass = 0.062;  // thesis (4.10), 6.4.1
-  const double depth = std::pow(force / kStiffness, 1 / kExponent);
-  return std::sqrt(kStiffness * kExponent * std::pow(depth, kExponent - 1) / kMass) / (2 * std::numbers::pi);
 }
 
 StrokeResults compute_stroke(const StrokeCase& stroke) {
   StrokeResults r{drive_both_ways(stroke), {}};
   const double end = r.driven.by_position.row.back().time;
   const auto add = [&](const std::string& name, const ActionFile& action) {
-    r.strings.push_back({name, action, play(action, default_keystroke(stroke.name), DriveKind::piston, end)});
+    r.strings.push_back(
+        {name, action, play(action, default_keystroke(stroke.name), study_tick(DriveKind::piston), end)});
   };
   add("felt", default_action());
   const double share = impact_of(r.strings[0].action, r.strings[0].played).share();

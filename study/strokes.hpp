@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "study/replay.hpp"
+#include "study/played_stroke.hpp"
 #include "study/section.hpp"
 
 namespace erard::study {
@@ -55,10 +55,6 @@ struct RailOscillation {
   double compression = 0;  // of the rail's felt, mean [m]
 };
 RailOscillation rail_oscillation(const ActionFile& action, const PlayedStroke& stroke, double from, double until);
-
-/// Frequency of a mass of 62 g on the rail's felt, linearised at the compression that gives `force` [N].
-///   delta = (F / k)^(1/r)    k_lin = k r delta^(r-1)    f = sqrt(k_lin / m_eq) / 2 pi          thesis (6.1), (6.2)
-double linear_rail_frequency(double force);
 
 /// The events that the thesis marks, by its letters; (a) is the rest.                thesis 6.2.2
 struct MarkedEvent {

@@ -6,10 +6,11 @@
 #include <numbers>
 #include <tuple>
 
-#include "erard/device/config_dir.hpp"
 #include "erard/mechanics/felt_law.hpp"
 #include "study/front_rail.hpp"
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
+#include "study/thesis_numbers.hpp"
+#include "study/touch_weight.hpp"
 
 namespace erard::study {
 namespace {
@@ -19,15 +20,6 @@ using std::numbers::pi;
 constexpr double kYoung = 1e10;      // E of wood, thesis 4.2.3 [Pa]
 constexpr double kDensity = 1000;    // rho [kg/m3]
 constexpr double kStrokeTime = .05;  // tau [s]
-
-// thesis Table 2.1
-constexpr double kArm = 0.245, kL12 = 0.129, kL32 = 0.017, kAlpha31 = 10.1;
-
-double parameter(const ActionFile& action, const std::string& name) {
-  for (const Parameter& p : action.parameters)
-    if (p.name == name) return p.value;
-  throw InputError("the action has no parameter " + name);
-}
 
 /// m B_G of a body about its own origin [kg m].
 Vector2 first_moment(const ActionFile& action, const std::string& body) {
@@ -47,10 +39,10 @@ double weight_moment(const ActionFile& action, const std::string& body) {
 double second_moment(const ClampedBeam& beam) { return beam.width * std::pow(beam.height, 3) / 12; }  // I [m^4]
 
 Felt common_felt() {
-  Felt felt;  // thesis (4.10)
-  felt.stiffness = 1.6e10;
-  felt.exponent = 2.7;
-  felt.damping = 5e7;
+  Felt felt;
+  felt.stiffness = thesis::kFeltStiffness;
+  felt.exponent = thesis::kFeltExponent;
+  felt.damping = thesis::kFeltDamping;
   return felt;
 }
 
@@ -84,22 +76,8 @@ double first_frequency(const ClampedBeam& beam) noexcept {
 double relative_period(const ClampedBeam& beam) noexcept { return 1 / (first_frequency(beam) * kStrokeTime); }
 
 LeverForces lever_forces(double finger_force) noexcept {
+  using namespace thesis;
   return {finger_force * kArm / kL12, finger_force * kArm / (kAlpha31 * kL32)};
-}
-
-KinematicRatios kinematic_ratios(const ActionFile& action) {
-  const Keystroke press = sampled_keystroke(KeystrokeQuantity::position, 0.9, 5e-3, [](double t) { return 0.012 * t; });
-  const SampledStroke stroke = play_sampled(action, press, tick_at(DriveKind::piston, 2000, 1));
-  const auto travelled = [&](double angle) {
-    return std::find_if(stroke.rows.begin(), stroke.rows.end(),
-                        [&](const Snapshot& row) { return row.key_position >= angle * action.model.finger.arm; });
-  };
-  const Snapshot &from = *travelled(0.002), &to = *travelled(0.032);
-  const auto turn = [&](const char* body) {
-    const auto i = static_cast<std::size_t>(find_body(action.model, body));
-    return to.angle[i] - from.angle[i];
-  };
-  return {-turn("W") / turn("K"), turn("H") / turn("K")};
 }
 
 double upsilon(double dry, double weight_moment) noexcept {
@@ -137,20 +115,19 @@ FeltEnergies press_felt(double compression, double duration) {
 
 FeltEnergies front_rail_energies(const ActionFile& action, const std::string& keystroke) {
   const auto rail = static_cast<std::size_t>(action.roles.front_rail);
-  const SampledStroke stroke = play_sampled(action, read_keystroke(config_dir() / "keystrokes" / (keystroke + ".csv")),
-                                            tick_at(DriveKind::piston, 16000));
+  const PlayedStroke stroke = play(action, default_keystroke(keystroke), tick_at(DriveKind::piston, 16000));
   const Felt& felt = action.model.contacts[rail].felt;
   FeltEnergies energies;
-  for (std::size_t i = 1; i < stroke.rows.size(); ++i) {
-    const double d0 = std::max(0.0, stroke.rows[i - 1].compression[rail]);
-    const double d1 = std::max(0.0, stroke.rows[i].compression[rail]);
+  for (std::size_t i = 1; i < stroke.row.size(); ++i) {
+    const double d0 = std::max(0.0, stroke.row[i - 1].compression[rail]);
+    const double d1 = std::max(0.0, stroke.row[i].compression[rail]);
     if (d1 == 0) continue;
     if (d1 <= d0) break;
-    const double middle = (d0 + d1) / 2, rate = (d1 - d0) / (stroke.rows[i].time - stroke.rows[i - 1].time);
+    const double middle = (d0 + d1) / 2, rate = (d1 - d0) / (stroke.row[i].time - stroke.row[i - 1].time);
     energies.compression = d1;
     energies.stored = felt_energy(felt, d1);
     energies.lost += felt.damping * middle * middle * rate * (d1 - d0);
-    energies.work += stroke.rows[i].normal[rail] * (d1 - d0);
+    energies.work += stroke.row[i].normal[rail] * (d1 - d0);
   }
   return energies;
 }
@@ -162,9 +139,9 @@ std::vector<Recomputed> recompute_tables(const ActionFile& action) {
     all.push_back({"delta / L" + of, beam.printed_deflection, relative_deflection(beam), beam.why_deflection});
     all.push_back({"1 / (f_1 tau)" + of, beam.printed_period, relative_period(beam), beam.why_period});
   }
-  const KinematicRatios ratios = kinematic_ratios(action);
-  all.push_back({"alpha_21, whippen to key, Table 2.1", 2.15, ratios.whippen_to_key, ""});
-  all.push_back({"alpha_31, hammer to key, Table 2.1", 10.1, ratios.hammer_to_key, ""});
+  const KinematicRatios ratios = kinematic_ratios(action, press_slowly(action));
+  all.push_back({"alpha_21, whippen to key, Table 2.1", thesis::kAlpha21, ratios.whippen_to_key, ""});
+  all.push_back({"alpha_31, hammer to key, Table 2.1", thesis::kAlpha31, ratios.hammer_to_key, ""});
   for (const Recomputed& row : table_5_2(action))
     all.push_back({"Upsilon of the " + row.quantity + ", Table 5.2", row.printed, row.computed, row.why});
   all.push_back({"W_elastic / W_viscous (4.11)", 22, press_felt(1e-3, 0.1).ratio(),

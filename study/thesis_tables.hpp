@@ -5,7 +5,6 @@
 #include <string>
 
 #include "erard/device/action_file.hpp"
-#include "study/recomputed.hpp"
 #include "study/section.hpp"
 
 namespace erard::study {
@@ -40,13 +39,6 @@ struct LeverForces {
   double knuckle = 0;  // F L / (alpha_31 l32)
 };
 LeverForces lever_forces(double finger_force) noexcept;
-
-/// Ratios of the angles travelled, from 0.002 to 0.032 rad of the key in a press of 12 mm/s.
-struct KinematicRatios {
-  double whippen_to_key = 0;  // alpha_21, Table 2.1: 2.15
-  double hammer_to_key = 0;   // alpha_31, Table 2.1: 10.1
-};
-KinematicRatios kinematic_ratios(const ActionFile& action);
 
 // ---- Table 5.2: dry friction against weight
 

@@ -6,7 +6,6 @@
 
 #include "study/figure.hpp"
 #include "study/front_rail.hpp"
-#include "study/sampled_stroke.hpp"
 #include "study/thesis_tables.hpp"
 #include "study/touch_weight.hpp"
 
@@ -18,9 +17,7 @@ constexpr double kGram = 1e3;        // [g/kg]
 
 /// Player's mass at the finger that brings (6.2) down to the measured frequency [kg].
 double player_mass(double force, double measured) {
-  constexpr double kRailArm = 0.233, kArm = 0.245;  // where the key's inertia weighs 62 g; the finger [m]
-  const double at_rail = ringing_mass(linear_rail(force).stiffness, measured) - kKeyMassAtRail;
-  return at_rail * (kRailArm * kRailArm) / (kArm * kArm);
+  return (ringing_mass(linear_rail(force).stiffness, measured) - kKeyMassAtRail) / mass_at_rail(1);
 }
 
 struct RailRow {
@@ -39,25 +36,6 @@ std::vector<RailRow> rail_rows() {
     row.held = ring_held_key(row.force, row.mass);
   }
   return rows;
-}
-
-std::string number(double value) { return std::isinf(value) ? "infinite" : fmt::format("{:.3g}", value); }
-
-std::string percent(double difference) {
-  return std::abs(difference) < 5e-4 ? "0.0 %" : fmt::format("{:+.1f} %", 100 * difference);
-}
-
-std::string table_of(const std::vector<Recomputed>& all, bool contradicted) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Recomputed& r : all) {
-    if (r.is_contradicted() != contradicted) continue;
-    std::vector<std::string> row{r.quantity, number(r.printed), number(r.computed), percent(r.difference())};
-    if (contradicted) row.push_back(r.why);
-    rows.push_back(row);
-  }
-  std::vector<std::string> head{"quantity", "printed", "computed", "difference"};
-  if (contradicted) head.push_back("why");
-  return table(head, rows);
 }
 
 std::string touch_table(const std::vector<TouchCase>& cases) {
@@ -93,16 +71,17 @@ void draw_touch(const Pictures& pictures, const std::vector<TouchCase>& cases) {
       for (std::size_t i = 0; i < all.size(); i += 10) few.push_back(all[i]);
       return few;
     };
-    return Panel{title,
-                 {"key position [mm]", {0, 8}},
-                 {"force on the finger [N]", {0, 1}},
-                 {{"down", thin(curve.down_y), thin(curve.down), "lines lw 2 lc rgb '#1f5fa8'"},
-                  {"up", thin(curve.up_y), thin(curve.up), "lines lw 2 lc rgb '#c8501e'"},
-                  {"means", {1.5, 7}, {measured.down, measured.down}, "lines lw 2 dashtype 2 lc rgb '#1f5fa8'"},
-                  {"", {1.5, 7}, {measured.up, measured.up}, "lines lw 2 dashtype 2 lc rgb '#c8501e'"},
-                  {"thesis: 0.70 and 0.38 N", {1.5, 7}, {0.70, 0.70}, "lines lw 1 lc rgb '#000000'"},
-                  {"", {1.5, 7}, {0.38, 0.38}, "lines lw 1 lc rgb '#000000'"}},
-                 "bottom right"};
+    return Panel{
+        title,
+        {"key position [mm]", {0, 8}},
+        {"force on the finger [N]", {0, 1}},
+        {{"down", thin(curve.down_y), thin(curve.down), "lines lw 2 lc rgb '#1f5fa8'"},
+         {"up", thin(curve.up_y), thin(curve.up), "lines lw 2 lc rgb '#c8501e'"},
+         {"means", {1.5, 7}, {measured.down, measured.down}, "lines lw 2 dashtype 2 lc rgb '#1f5fa8'"},
+         {"", {1.5, 7}, {measured.up, measured.up}, "lines lw 2 dashtype 2 lc rgb '#c8501e'"},
+         {"thesis: 0.70 and 0.38 N", {1.5, 7}, {thesis::kDownForce, thesis::kDownForce}, "lines lw 1 lc rgb '#000000'"},
+         {"", {1.5, 7}, {thesis::kUpForce, thesis::kUpForce}, "lines lw 1 lc rgb '#000000'"}},
+        "bottom right"};
   };
   const StaticTouch& wanted = cases.back().parameters;
   draw(pictures.folder / "touch_weight.svg",
@@ -141,9 +120,9 @@ void draw_rail(const Pictures& pictures, const std::vector<RailRow>& rows) {
     Curve formula{"(6.2), " + force, {}, {}, fmt::format("lines lw 2 lc rgb '{}'", colours[i])};
     Curve played{"played, " + force, {}, {}, fmt::format("points pt 7 ps 0.6 lc rgb '{}'", colours[i])};
     for (const double gram : {0., 15., 30., 50., 75., 100., 125., 150., 200.}) {
-      const double ratio = 0.245 * 0.245 / (0.233 * 0.233);
       formula.x.push_back(gram);
-      formula.y.push_back(ringing_frequency(linear_rail(row.force).stiffness, kKeyMassAtRail + 1e-3 * gram * ratio));
+      formula.y.push_back(
+          ringing_frequency(linear_rail(row.force).stiffness, kKeyMassAtRail + mass_at_rail(1e-3 * gram)));
       const HeldKey held = ring_held_key(row.force, 1e-3 * gram);
       played.x.push_back(gram);
       played.y.push_back(held.frequency > 0 ? held.frequency : NAN);
@@ -221,18 +200,18 @@ Section thesis_tables_section(const Pictures& pictures) {
   const TouchWeight &played = cases[0].measured, &no_spring = cases[1].measured;
   std::vector<Recomputed> all = recompute_tables(action);
   for (const Recomputed& r : recompute_touch(played)) all.push_back(r);
-  const auto count = [&all](auto&& claim) { return std::count_if(all.begin(), all.end(), claim); };
-  const auto contradicted = count([](const Recomputed& r) { return r.is_contradicted(); });
-  const auto rounded = count([](const Recomputed& r) { return r.is_contradicted() && r.why.ends_with("one digit"); });
+  const std::vector<Contradiction> contradicted = contradictions_of(all);
+  const auto rounded = std::count_if(contradicted.begin(), contradicted.end(),
+                                     [](const Contradiction& c) { return c.why.ends_with("one digit"); });
   std::string text =
-      fmt::format(kOpening, all.size(), std::ssize(all) - contradicted, contradicted, rounded, played.down, played.up,
-                  rails[0].stroke.oscillation.frequency, rails[1].stroke.oscillation.frequency, kGram * rails[0].mass,
-                  kGram * rails[1].mass, fmt::arg("link", pictures.link));
+      fmt::format(kOpening, all.size(), all.size() - contradicted.size(), contradicted.size(), rounded, played.down,
+                  played.up, rails[0].stroke.oscillation.frequency, rails[1].stroke.oscillation.frequency,
+                  kGram * rails[0].mass, kGram * rails[1].mass, fmt::arg("link", pictures.link));
 
   const LeverForces forces = lever_forces(10);
   const FeltEnergies piano = front_rail_energies(action, "piano"), forte = front_rail_energies(action, "forte");
-  text += "\n### Printed numbers that the computed ones contradict by more than 2 %\n" + table_of(all, true);
-  text += "\n### Those they confirm\n" + table_of(all, false);
+  text += "\n### Printed numbers that the computed ones contradict by more than 2 %\n" + table(contradicted);
+  text += "\n### Those they confirm\n" + table_of_confirmed(all);
   text += fmt::format(kTablesText, forces.whippen, forces.knuckle, kMillimetre * piano.compression,
                       kMillimetre * forte.compression, piano.ratio(), forte.ratio());
   text += "\n### Touch weight\n" + touch_table(cases);
@@ -241,7 +220,13 @@ Section thesis_tables_section(const Pictures& pictures) {
   text += "\n### Front rail\n" + rail_table(rails);
   text += fmt::format(kRailText, kGram * rails[0].mass, kGram * rails[1].mass, rails[0].held.frequency,
                       rails[1].held.frequency, rails[0].held.rail);
-  return {"Tables 4.1 and 5.2, touch weight, front rail", text};
+  const std::string result = fmt::format(
+      "{} of {} printed numbers are met within 2 %; touch weight {:.2f} / {:.2f} N, not 0.70 / 0.38; the front rail "
+      "rings "
+      "at {:.0f} / {:.0f} Hz, 70 / 90 with a player's {:.0f} to {:.0f} g",
+      all.size() - contradicted.size(), all.size(), played.down, played.up, rails[0].stroke.oscillation.frequency,
+      rails[1].stroke.oscillation.frequency, kGram * rails[0].mass, kGram * rails[1].mass);
+  return {"Tables 4.1 and 5.2, touch weight, front rail", result, text, contradicted};
 }
 
 }  // namespace erard::study

@@ -3,21 +3,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/sampled_stroke.hpp"
-
 namespace erard::study {
 namespace {
 
 using std::numbers::pi;
 
-constexpr double kSpeed = 0.006, kDepth = 0.0078;  // of the piston [m/s], [m]
-constexpr double kTurn = kDepth / kSpeed;          // [s]
-constexpr double kFrom = 0.0015, kTo = 0.007;      // key positions of the mean [m]
+constexpr double kSpeed = 0.006, kDepth = 0.0078;         // of the piston [m/s], [m]
+constexpr double kTurn = kDepth / kSpeed;                 // [s]
+constexpr double kFrom = 0.0015, kTo = 0.007;             // key positions of the mean force [m]
+constexpr double kRatioFrom = 0.0005, kRatioTo = 0.0075;  // and of the lever ratios [m]
 
-// thesis Table 2.1
 constexpr double kGravity = 9.81;  // [m/s^2]
-constexpr double kArm = 0.245, kAlpha21 = 2.15, kAlpha31 = 10.1;
-constexpr double kWeightKey = -0.0155, kWeightWhippen = -0.0103, kWeightHammer = 0.0133, kDryKey = 0.012;  // [N m]
+using thesis::kAlpha21, thesis::kAlpha31, thesis::kArm;
+constexpr double kWeightKey = thesis::kWeight[0], kWeightWhippen = thesis::kWeight[1],
+                 kWeightHammer = thesis::kWeight[2];
 // thesis Table 5.2
 constexpr double kUpsilonWhippen = 1.98, kUpsilonHammer = 1.68;
 // thesis Figure 4.23
@@ -26,18 +25,38 @@ constexpr double kWhippenAtRest = -0.03;  // [rad]
 /// c_d = m g l (Upsilon / 2 pi)^2                                                   thesis (5.7)
 double dry_friction(double upsilon, double weight_moment) { return weight_moment * std::pow(upsilon / (2 * pi), 2); }
 
-SampledStroke press(const ActionOptions& options) {
+}  // namespace
+
+PlayedStroke press_slowly(const ActionFile& action) {
   const Keystroke there_and_back = sampled_keystroke(KeystrokeQuantity::position, 2 * kTurn, 5e-3, [](double t) {
     return t < kTurn ? kSpeed * t : kDepth - kSpeed * (t - kTurn);
   });
-  return play_sampled(default_action(options), there_and_back, tick_at(DriveKind::piston, 2000, 1));
+  return play(action, there_and_back, tick_at(DriveKind::piston, 2000, 1));
 }
 
-TouchCase touch_case(const std::string& what, const StaticTouch& parameters) {
-  return {what, parameters, measure_touch_weight(touch_options(parameters)), static_touch_weight(parameters)};
+TouchWeight touch_weight_of(const PlayedStroke& press) {
+  TouchWeight sum;
+  int downs = 0, ups = 0;
+  for (const Snapshot& row : press.row) {
+    if (row.key_position < kFrom || row.key_position > kTo) continue;
+    (row.time < kTurn ? sum.down : sum.up) += row.force;
+    ++(row.time < kTurn ? downs : ups);
+  }
+  return {sum.down / downs, sum.up / ups};
 }
 
-}  // namespace
+KinematicRatios kinematic_ratios(const ActionFile& action, const PlayedStroke& press) {
+  const auto at = [&press](double y) {
+    return *std::find_if(press.row.begin(), press.row.end(),
+                         [y](const Snapshot& row) { return row.key_position >= y; });
+  };
+  const Snapshot from = at(kRatioFrom), to = at(kRatioTo);
+  const auto turn = [&](const char* body) {
+    const auto i = static_cast<std::size_t>(find_body(action.model, body));
+    return to.angle[i] - from.angle[i];
+  };
+  return {-turn("W") / turn("K"), turn("H") / turn("K")};
+}
 
 ActionOptions touch_options(const StaticTouch& parameters) {
   ActionOptions options;
@@ -49,14 +68,7 @@ ActionOptions touch_options(const StaticTouch& parameters) {
 }
 
 TouchWeight measure_touch_weight(const ActionOptions& options) {
-  TouchWeight sum;
-  int downs = 0, ups = 0;
-  for (const Snapshot& row : press(options).rows) {
-    if (row.key_position < kFrom || row.key_position > kTo) continue;
-    (row.time < kTurn ? sum.down : sum.up) += row.force;
-    ++(row.time < kTurn ? downs : ups);
-  }
-  return {sum.down / downs, sum.up / ups};
+  return touch_weight_of(press_slowly(default_action(options)));
 }
 
 TouchWeight static_touch_weight(const StaticTouch& parameters) noexcept {
@@ -65,11 +77,19 @@ TouchWeight static_touch_weight(const StaticTouch& parameters) noexcept {
   const double spring = parameters.kappa * (parameters.rest - whippen_angle);
   const double mean = (kWeightKey - kAlpha21 * kWeightWhippen + kAlpha31 * kWeightHammer - kAlpha21 * spring) / kArm;
   const double friction = parameters.friction *
-                          (kDryKey + kAlpha21 * dry_friction(kUpsilonWhippen, -kWeightWhippen) +
+                          (thesis::kKeyDry + kAlpha21 * dry_friction(kUpsilonWhippen, -kWeightWhippen) +
                            kAlpha31 * dry_friction(kUpsilonHammer, kWeightHammer)) /
                           kArm;
   return {mean + friction, mean - friction};
 }
+
+namespace {
+
+TouchCase touch_case(const std::string& what, const StaticTouch& parameters) {
+  return {what, parameters, measure_touch_weight(touch_options(parameters)), static_touch_weight(parameters)};
+}
+
+}  // namespace
 
 std::vector<TouchCase> touch_cases() {
   const StaticTouch printed;
@@ -91,8 +111,8 @@ std::vector<TouchCase> touch_cases() {
 
 std::vector<Recomputed> recompute_touch(const TouchWeight& measured) {
   const TouchWeight formula = static_touch_weight({});
-  const TouchWeight no_spring = static_touch_weight({0, 0.419, 1});
-  const TouchWeight no_friction = static_touch_weight({0.0355, 0.419, 0});
+  const TouchWeight no_spring = static_touch_weight({.kappa = 0});
+  const TouchWeight no_friction = static_touch_weight({.friction = 0});
   return {
       {"F_down [N], 2.2", kThesisTouchWeight.down, measured.down, "played on its other numbers; see the cases below"},
       {"F_up [N], 2.2", kThesisTouchWeight.up, measured.up, "the same"},
@@ -102,14 +122,14 @@ std::vector<Recomputed> recompute_touch(const TouchWeight& measured) {
        "(2.7) has no spring; Table 4.12 has"},
       {"L (F_down - F_up) / 2 = C_d (2.8) [N m], Table 2.2", 0.039, kArm * formula.friction(),
        "c_d1 of Table 2.1 and Table 5.2 add up to 0.024"},
-      {"kappa of the whippen's spring [N m], Table 2.1", 0.087, 0.0355, "Table 4.12, the same spring"},
+      {"kappa of the whippen's spring [N m], Table 2.1", 0.087, thesis::kWhippenSpring, "Table 4.12, the same spring"},
       {"mass that moves the key without dry friction [g], 5.1.1", 15, 1e3 * no_friction.mean() / kGravity,
        "mean of F_down and F_up without friction"}};
 }
 
 TouchCurve touch_curve(const ActionOptions& options) {
   TouchCurve curve;
-  for (const Snapshot& row : press(options).rows) {
+  for (const Snapshot& row : press_slowly(default_action(options)).row) {
     const bool is_down = row.time < kTurn;
     (is_down ? curve.down_y : curve.up_y).push_back(row.key_position);
     (is_down ? curve.down : curve.up).push_back(row.force);

@@ -1,11 +1,13 @@
-// Touch weight: measured on the action, and by the lever ratios of thesis Table 2.1.
+// What a slow press shows: touch weight, measured and by the lever ratios of thesis Table 2.1, and those ratios.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "erard/device/action_file.hpp"
-#include "study/recomputed.hpp"
+#include "study/played_stroke.hpp"
+#include "study/section.hpp"
+#include "study/thesis_numbers.hpp"
 
 namespace erard::study {
 
@@ -18,9 +20,22 @@ struct TouchWeight {
   double friction() const noexcept { return (down - up) / 2; }  // of the hinges               thesis (2.8) over L
 };
 
-inline constexpr TouchWeight kThesisTouchWeight{0.70, 0.38};  // 2.2, damper removed
+inline constexpr TouchWeight kThesisTouchWeight{thesis::kDownForce, thesis::kUpForce};  // damper removed
 
-/// Piston at 6 mm/s to Y = 7.8 mm and back, no damper; mean force over y = 1.5 to 7 mm each way.
+/// Piston at 6 mm/s to Y = 7.8 mm and back, a row every 0.5 ms.
+PlayedStroke press_slowly(const ActionFile& action);
+
+/// Mean force over y = 1.5 to 7 mm each way.
+TouchWeight touch_weight_of(const PlayedStroke& press);
+
+/// Ratios of the angles travelled on the way down, over y = 0.5 to 7.5 mm.
+struct KinematicRatios {
+  double whippen_to_key = 0;  // alpha_21, Table 2.1: 2.15
+  double hammer_to_key = 0;   // alpha_31, Table 2.1: 10.1
+};
+KinematicRatios kinematic_ratios(const ActionFile& action, const PlayedStroke& press);
+
+/// Of the action without damper, pressed slowly.
 TouchWeight measure_touch_weight(const ActionOptions& options);
 
 /// What the printed numbers say in a quasi-static press.
@@ -28,9 +43,9 @@ TouchWeight measure_touch_weight(const ActionOptions& options);
 ///   friction L = c_dK + alpha_21 c_dW + alpha_31 c_dH                               thesis (2.1), (2.4), (4.8)
 /// The spring lifts the whippen; its moment is taken at the whippen's angle at mid-travel.
 struct StaticTouch {
-  double kappa = 0.0355;  // spring of the whippen [N m/rad], thesis Table 4.12
-  double rest = 0.419;    // theta_0 [rad], the same
-  double friction = 1;    // factor on the dry frictions of key, whippen and hammer
+  double kappa = thesis::kWhippenSpring;     // [N m/rad]
+  double rest = thesis::kWhippenSpringRest;  // theta_0 [rad]
+  double friction = 1;                       // factor on the dry frictions of key, whippen and hammer
 };
 TouchWeight static_touch_weight(const StaticTouch& parameters) noexcept;
 

@@ -6,6 +6,7 @@
 
 #include "study/figure.hpp"
 #include "study/rigid_contact.hpp"
+#include "study/thesis_numbers.hpp"
 
 namespace erard::study {
 namespace {
@@ -17,7 +18,6 @@ double gap(const Model& model, const Snapshot& row, const char* contact) {
   return -row.compression[static_cast<std::size_t>(find_contact(model, contact))];
 }
 
-std::string percent(double share) { return fmt::format("{:.1f}", 100 * share); }
 std::string millimetres(double length, int digits = 2) {
   return fmt::format("{:.{}f}", std::abs(length) < 5e-8 ? 0.0 : 1e3 * length, digits);
 }
@@ -154,7 +154,7 @@ std::string rest_note(const FeltlessComparison& piano) {
 
 std::string lead_note(const FeltlessComparison& piano, const FeltlessComparison& forte) {
   // L l21 / (l12 l23) of thesis Table 2.1: travel of the key for a travel at the knuckle
-  constexpr double kKeyPerKnuckle = 0.245 * 0.060 / (0.129 * 0.080);
+  constexpr double kKeyPerKnuckle = thesis::kArm * thesis::kL21 / (thesis::kL12 * thesis::kL23);
   const Snapshot& push = hardest_push(piano.full);
   const double depth = -gap(default_action().model, push, "JH");
   return fmt::format(
@@ -199,7 +199,7 @@ ActionFile action_without(Felts felts) {
   }
   ActionFile action = default_action();
   Model& model = action.model;
-  const Snapshot rest = play(action, default_keystroke(kPiano.name), DriveKind::none, 0).row.front();
+  const Snapshot rest = play(action, default_keystroke(kPiano.name), study_tick(DriveKind::none), 0).row.front();
   for (int c = 0; c < model.contact_count; ++c) {
     const auto i = static_cast<std::size_t>(c);
     if (felts == Felts::knuckle_kept && c == action.roles.escapement) continue;
@@ -215,15 +215,15 @@ FeltlessComparison compare_felts(const StrokeCase& stroke) {
   const double end = stroke.release;
   FeltlessComparison c;
   c.stroke = stroke;
-  c.full = play(default_action(), piston, DriveKind::piston, end);
+  c.full = play(default_action(), piston, study_tick(DriveKind::piston), end);
   const Keystroke force = force_of(c.full);
-  c.full_by_force = play(default_action(), force, DriveKind::force, end);
+  c.full_by_force = play(default_action(), force, study_tick(DriveKind::force), end);
   for (const Felts felts : kWays) {
     const ActionFile action = action_without(felts);
     FeltlessStroke s;
     s.felts = felts;
-    s.by_force = play(action, force, DriveKind::force, end);
-    s.by_position = play(action, piston, DriveKind::piston, end);
+    s.by_force = play(action, force, study_tick(DriveKind::force), end);
+    s.by_position = play(action, piston, study_tick(DriveKind::piston), end);
     const auto errors = [&](double until) {
       return FeltlessErrors{relative_error(c.full, s.by_force, until, key_position),
                             relative_error(c.full, s.by_position, until, finger_force)};
@@ -249,13 +249,19 @@ Section without_felts_section(const Pictures& pictures) {
   draw_curves(pictures.folder / "without_felts.svg", both);
   const FeltlessComparison& piano = both[0];
   const FeltlessComparison& forte = both[1];
+  const FeltlessStroke &p = piano.of(Felts::out), &f = forte.of(Felts::out);
+  const std::string result =
+      fmt::format("rigid surfaces for felts: the force is off by {} / {} % (piano / forte), the key by {} / {} %",
+                  percent(p.error.force), percent(f.error.force), percent(p.error.key), percent(f.error.key));
   return {"Without felts (Figures 6.11, 6.12)",
+          result,
           summary(piano, forte) +
               fmt::format("\n![Key driven by force above, force driven by position below, with and without felts]"
                           "({}/without_felts.svg)\n\n",
                           pictures.link) +
               key_table(both) + "\n" + force_table(both) + "\n" + rest_note(piano) + regulation_table(piano) + "\n" +
-              lead_note(piano, forte) + rail_note() + rail_table(both)};
+              lead_note(piano, forte) + rail_note() + rail_table(both),
+          {}};
 }
 
 }  // namespace erard::study

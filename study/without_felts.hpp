@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/replay.hpp"
+#include "study/played_stroke.hpp"
 #include "study/section.hpp"
 
 namespace erard::study {

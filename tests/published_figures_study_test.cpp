@@ -5,11 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "erard/device/config_dir.hpp"
-#include "study/study_step.hpp"
 #include "study/published_figures.hpp"
 #include "study/repetition_limit.hpp"
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
 
 namespace erard::study {
 namespace {
@@ -210,14 +208,14 @@ TEST(Strokes, FasterHammersAreFreeForATimeThatShrinks) {
 
 TEST(Strokes, HammerEscapesWhereItDoesInTheIndependentSimulation) {
   for (const auto& [name, way] : {std::pair{"piano", 2.45e-3}, {"forte", 3.21e-3}}) {
-    const Keystroke keystroke = read_keystroke(config_dir() / "keystrokes" / (std::string(name) + ".csv"));
+    const Keystroke keystroke = default_keystroke(name);
     const TracedStroke stroke = trace_stroke(action(), keystroke, DriveKind::piston);
     const StrokeTimes times = time_stroke(stroke.trace, stroke.events);
     // one internal step of 0.125 ms at the hammer's 1 and 1.5 m/s
     EXPECT_NEAR(times.free_way, way, times.string_speed * kStudyStep) << name;
-    EXPECT_NEAR(
-        times.string_speed,
-        stroke.trace.hammer_speed[static_cast<std::size_t>(std::lround(times.hammer_string / kStudyStep)) - 1], 1e-9);
+    EXPECT_NEAR(times.string_speed,
+                stroke.trace.hammer_speed[static_cast<std::size_t>(std::lround(times.hammer_string / kStudyStep)) - 1],
+                1e-9);
   }
 }
 
