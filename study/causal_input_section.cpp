@@ -102,9 +102,9 @@ Panel delay_panel(const Trials& trials, const char* name, InputCost Trial::*stro
 Panel noise_panel(const Trials& trials, std::size_t noise, const char* name, InputCost Trial::*stroke) {
   Panel panel{fmt::format("{}, {:.0f} um of noise", name, kNoises[noise] * 1e6),
               {"noise gain [1/s]", {20, 6000}, true},
-              {"force error [N RMS]", {0.01, 30}, true},
+              {"force error [N RMS]", {0.003, 30}, true},
               {},
-              "bottom left"};
+              "bottom left Left reverse samplen 2"};
   for (const Family family : kFamilies) {
     Curve curve{look_of(family).label, {}, {}, look_of(family).style};
     double best = std::numeric_limits<double>::infinity();
@@ -125,7 +125,7 @@ Panel force_panel(const ActionFile& action, const OfflineRun& truth, const Candi
               {"time [ms]"},
               {"finger force [N]"},
               {},
-              "top left"};
+              "top left Left reverse samplen 2"};
   Curve spline{"offline, spline", {}, {}, "lines lw 1.6 lc rgb '#444444'"};
   for (std::size_t i = 0; i < truth.force.size(); ++i) {
     spline.x.push_back((truth.from + static_cast<double>(i + 1) * 5e-4) * 1e3);

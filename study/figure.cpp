@@ -113,15 +113,18 @@ void add_data(std::string& script, const Curve& curve, const Scale& x, const Sca
   script += "e\n";
 }
 
-/// gnuplot opens a group for each change of its pen, most of which stay empty.
-void remove_empty_groups(const std::filesystem::path& svg) {
+/// Takes out what gnuplot writes and nobody sees: groups for changes of its pen, most of them empty, and hundredths of a
+/// pixel in paths.
+void tidy(const std::filesystem::path& svg) {
+  static const std::regex kEmptyGroup("<g fill=\"none\"[^>]*>\\s*</g>\\s*"),
+      kPoint("([ML][0-9]+\\.[0-9])[0-9](,[0-9]+\\.[0-9])[0-9]");
   std::string text;
   {
     std::ifstream in(svg);
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
-  static const std::regex kEmpty("<g fill=\"none\"[^>]*>\\s*</g>\\s*");
-  std::ofstream(svg) << std::regex_replace(text, kEmpty, "");
+  text = std::regex_replace(text, kEmptyGroup, "");
+  std::ofstream(svg) << std::regex_replace(text, kPoint, "$1$2");
 }
 
 void add_panel(std::string& script, const Panel& panel, int width, int height) {
@@ -155,7 +158,7 @@ void draw(const std::filesystem::path& svg, const std::vector<Panel>& panels, in
   const bool is_written = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   if (pclose(gnuplot) != 0 || !is_written)
     throw std::runtime_error(fmt::format("gnuplot could not draw {}; is it installed?", svg.string()));
-  remove_empty_groups(svg);
+  tidy(svg);
 }
 
 }  // namespace erard::study

@@ -133,7 +133,7 @@ void draw_pendulum_at_a_glance(const path& svg) {
   Panel error = error_panel("The steps it takes, Y = 5 (Figure 5.10)", kKeyOfErrors);
   error.curves.push_back(error_curve(kLinearlyImplicitRow, 5, 4000, "points pt 2 ps 0.4 lc rgb '#d62728'"));
   error.curves.push_back(error_curve(kProjectedRow, 5, 4000, "points pt 9 ps 0.4 lc rgb '#1f77b4'"));
-  error.curves.push_back(error_curve(kEngineMiddleRow, 5, 1000, "points pt 7 ps 0.2 lc rgb '#2ca02c'"));
+  error.curves.push_back(error_curve(kEngineMiddleRow, 5, 1000, "points pt 7 ps 0.35 lc rgb '#2ca02c'"));
   draw(svg, {motion, error}, 2, 560, 400);
 }
 

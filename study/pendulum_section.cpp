@@ -203,9 +203,9 @@ Section pendulum_section(const Pictures& pictures) {
       "100, "
       "then in rungs of 1 %):\n\n" +
       steps_table(steps) +
-      "\nAnd the computing time that this is for a simulated second, on one core of a shared virtual machine. The "
-      "engine has "
-      "the machinery of twenty coordinates in each of its steps; the others are a few lines each.\n\n" +
+      "\nAnd the computing time that this is for a simulated second, on one core of a shared virtual machine: the only "
+      "numbers here that change from run to run. The engine's step is that of any mechanism; the others are a few "
+      "lines each.\n\n" +
       cost_table(steps);
   text +=
       "\n### What makes the difference\nNot the ramp itself. Implicit gravity damps the swing, whatever the friction "

@@ -151,7 +151,7 @@ Panel delay_scatter(const std::vector<RecordingRun>& runs) {
 
 Panel delay_over_speed(const std::vector<RecordingRun>& runs) {
   Panel panel{
-      "Key bottom after hammer, over its mean speed", {"hammer [m/s]", {0, 3}}, {"[ms]", {-2, 12}}, {}, "top right"};
+      "Key bottom after hammer, over its mean speed", {"hammer [m/s]", {0, 3}}, {"[ms]", {-2, 17}}, {}, "top right"};
   for (const PublishedGrand& grand : published_grands()) {
     const auto dashes = panel.curves.size() + 1;
     Curve curve{std::string(grand.name) + ", published", {}, {}, fmt::format("lines dt {} lc rgb '#444444'", dashes)};

@@ -96,7 +96,7 @@ void draw_bodies(const std::filesystem::path& svg, const StrokeResults& r) {
   std::vector<Panel> panels;
   for (std::size_t body = 0; body < kBodies.size(); ++body)
     panels.push_back(compare_strings(r, kBodies[body], [body](const Snapshot& s) { return s.angle[body]; }));
-  panels.front().key = "bottom left";
+  panels.front().key = "bottom left Left reverse samplen 2";
   draw(svg, panels, 2, 600, 280);
 }
 

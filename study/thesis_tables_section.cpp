@@ -81,7 +81,7 @@ void draw_touch(const Pictures& pictures, const std::vector<TouchCase>& cases) {
          {"", {1.5, 7}, {measured.up, measured.up}, "lines lw 2 dashtype 2 lc rgb '#c8501e'"},
          {"thesis: 0.70 and 0.38 N", {1.5, 7}, {thesis::kDownForce, thesis::kDownForce}, "lines lw 1 lc rgb '#000000'"},
          {"", {1.5, 7}, {thesis::kUpForce, thesis::kUpForce}, "lines lw 1 lc rgb '#000000'"}},
-        "bottom right"};
+        "bottom center"};
   };
   const StaticTouch& wanted = cases.back().parameters;
   draw(pictures.folder / "touch_weight.svg",
