@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "erard/mechanics/rest.hpp"
-#include "study/sampled_stroke.hpp"
+#include "study/played_stroke.hpp"
 
 namespace erard::study {
 namespace {
