@@ -54,7 +54,8 @@ void add_options(CLI::App& app, Options& o) {
                  "rates of the output in Hz, 400 to 50000 (default: 1000,2000,5000,10000 for one key, 2000 for more)")
       ->delimiter(',');
   app.add_option("--setting", o.setting,
-                 "cheapest: one internal step a period; default: as many as erard-sim takes, 4 at 2 kHz; both")
+                 "cheapest: one internal step a period; default: as erard-sim takes them, 2 at 2 kHz and up to 8 where "
+                 "something strikes; both")
       ->check(CLI::IsMember({"cheapest", "default", "both"}))
       ->capture_default_str();
   app.add_option("--repeat", o.request.repeat, "measure that many times as long, 1 to 100: p99.99 takes 100000 periods")

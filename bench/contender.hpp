@@ -14,12 +14,14 @@ namespace erard::bench {
 struct Effort {
   long iterations = 0;     // Newton linearisations; of a peer the iterations of its solver
   long sweeps = 0;         // of the solver inside; 0 when a peer has none
+  long steps = 0;          // internal, taken
   long not_converged = 0;  // periods of a key with a step that reached a limit
   bool is_finite = true;
 
   Effort& operator+=(const Effort& other) noexcept {
     iterations += other.iterations;
     sweeps += other.sweeps;
+    steps += other.steps;
     not_converged += other.not_converged;
     is_finite = is_finite && other.is_finite;
     return *this;
@@ -59,6 +61,7 @@ struct Job {
   int keys = 1;
   double rate_Hz = 2000;
   int substeps = 1;
+  bool is_split = false;  // into shorter ones where the motion is not as guessed; the peer has no such steps
 };
 
 /// Both keep references to the stage.

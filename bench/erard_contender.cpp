@@ -6,7 +6,7 @@ namespace {
 TickSettings settings_of(const Job& job) {
   TickSettings settings;
   settings.drive = DriveKind::piston;
-  settings.set_rate(job.rate_Hz, job.substeps);
+  settings.set_rate(job.rate_Hz, job.is_split ? 0 : job.substeps);
   return settings;
 }
 

@@ -42,7 +42,7 @@ class MatchRun {
     for (const Entrant& entrant : match.entrants)
       runners_.push_back({entrant,
                           maker_of(entrant.engine)(harness.stage, job(entrant)),
-                          SampleSet(room, match.keys == 1 ? entrant.substeps : 0),
+                          SampleSet(room, timed_steps(entrant)),
                           {},
                           0});
   }
@@ -61,7 +61,12 @@ class MatchRun {
   }
 
  private:
-  Job job(const Entrant& entrant) const { return {match_.scene, match_.keys, match_.rate_Hz, entrant.substeps}; }
+  Job job(const Entrant& entrant) const {
+    return {match_.scene, match_.keys, match_.rate_Hz, entrant.substeps, entrant.is_split};
+  }
+
+  /// Steps of a period that are timed one by one: those of one key, where there are always as many.
+  int timed_steps(const Entrant& entrant) const { return match_.keys == 1 && !entrant.is_split ? entrant.substeps : 0; }
 
   /// Share of the plan that is done.
   double done() const {
@@ -86,7 +91,7 @@ class MatchRun {
     const bool has_enough = runner.spent >= match_.seconds && samples.ticks().size() >= least_;
     if (has_enough || samples.room() < static_cast<std::size_t>(slice_)) return false;
     const auto clock = static_cast<std::int64_t>(std::lround(harness_.clock_overhead * 1e9));
-    std::vector<std::int64_t> step_ends(match_.keys == 1 ? static_cast<std::size_t>(runner.entrant.substeps) : 0);
+    std::vector<std::int64_t> step_ends(static_cast<std::size_t>(timed_steps(runner.entrant)));
     const std::size_t before = samples.ticks().size();
     const double done_so_far = done();
     Effort effort;
@@ -134,7 +139,7 @@ class MatchRun {
     row.tick = describe(samples.ticks());
     row.step = describe(samples.steps());
     row.noise = describe(samples.noise());
-    const double steps = static_cast<double>(row.tick.count) * match_.keys * runner.entrant.substeps;
+    const double steps = static_cast<double>(effort.steps);
     row.iterations = static_cast<double>(effort.iterations) / steps;
     row.sweeps =
         runner.entrant.engine == Engine::erard ? static_cast<double>(effort.sweeps) / steps : Distribution::kNone;

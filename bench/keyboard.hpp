@@ -37,6 +37,7 @@ class Keyboard {
                       [&steps](const State&, const StepReport&, double) noexcept { steps.mark(); });
       effort.iterations += report.linearisations;
       effort.sweeps += report.sweeps;
+      effort.steps += report.steps;
       effort.not_converged += report.status == StepStatus::not_converged;
       effort.is_finite = effort.is_finite && report.status != StepStatus::not_finite;
       if (k == 0) force_ = report.force;

@@ -23,10 +23,12 @@ std::vector<std::string> all_names() {
 std::vector<Entrant> entrants_of(Engine engine, const Request& request, double rate_Hz) {
   TickSettings settings;
   settings.set_rate(rate_Hz);
-  if (settings.substeps == 1 && request.cheapest && request.with_default) return {{engine, "both", 1}};
+  const bool is_split = engine == Engine::erard && settings.refinement > 1;
+  if (settings.substeps == 1 && !is_split && request.cheapest && request.with_default)
+    return {{engine, "both", 1, false}};
   std::vector<Entrant> entrants;
-  if (request.cheapest) entrants.push_back({engine, "cheapest", 1});
-  if (request.with_default) entrants.push_back({engine, "default", settings.substeps});
+  if (request.cheapest) entrants.push_back({engine, "cheapest", 1, false});
+  if (request.with_default) entrants.push_back({engine, "default", settings.substeps, is_split});
   return entrants;
 }
 

@@ -27,6 +27,7 @@ struct Entrant {
   Engine engine = Engine::erard;
   std::string setting;  // "cheapest" (one step), "default", or "both" where they are the same
   int substeps = 1;
+  bool is_split = false;  // of tick()'s default: at least so many steps
 };
 
 /// Entrants that play the same scene at the same rate, in turn, slice by slice: what the machine does meanwhile meets

@@ -190,8 +190,9 @@ TEST(Plan, HasEverySettingOnceAndKeyboardsAtTwoKilohertz) {
   std::set<std::string> names;
   for (const Match& match : make_plan({})) {
     names.insert(match.scene->name);
-    std::set<int> substeps;
-    for (const Entrant& entrant : match.entrants) EXPECT_TRUE(substeps.insert(entrant.substeps).second);
+    std::set<std::pair<int, bool>> steps;
+    for (const Entrant& entrant : match.entrants)
+      EXPECT_TRUE(steps.insert({entrant.substeps, entrant.is_split}).second);
     if (match.scene->is_keyboard) {
       EXPECT_EQ(match.rate_Hz, 2000);
     }

@@ -88,14 +88,14 @@ TEST(ErardBench, QuickRunWritesWholeFiles) {
   EXPECT_LT(eta["piano"
                 "default"],
             eta["piano"
-                "cheapest"]);  // four steps a period against one
+                "cheapest"]);  // two to eight steps a period against one
   EXPECT_LT(eta["forte"
                 "default"],
             eta["forte"
                 "cheapest"]);
   EXPECT_LT(eta["forte"
                 "default"],
-            0.02);  // docs/performance.md: 0.6 %
+            0.02);  // 0.3 % where the damper does not play along
 
   const YAML::Node json = YAML::LoadFile(json_file);  // JSON is YAML
   EXPECT_TRUE(json["complete"].as<bool>());

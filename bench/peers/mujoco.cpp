@@ -108,6 +108,7 @@ class MujocoKeyboard : public Contender {
         const DriveSample piston = parts_[k].at(begin + i * h);
         step(data, piston);
         steps.mark();
+        ++effort.steps;
         effort.iterations += data.solver_niter[0];
         effort.not_converged += data.solver_niter[0] >= model_->opt.iterations;
         if (k == 0) force_ = force_at(data, piston);
