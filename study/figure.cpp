@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <stdexcept>
 
 namespace erard::study {
@@ -113,18 +112,52 @@ void add_data(std::string& script, const Curve& curve, const Scale& x, const Sca
   script += "e\n";
 }
 
-/// Takes out what gnuplot writes and nobody sees: groups for changes of its pen, most of them empty, and hundredths of a
-/// pixel in paths.
+/// End of the white space that starts at `at`.
+std::size_t skip_space(const std::string& text, std::size_t at) {
+  return std::min(text.find_first_not_of(" \n\r\t", at), text.size());
+}
+
+/// Without the groups in which gnuplot changes its pen and draws nothing.
+std::string drop_empty_groups(const std::string& text) {
+  const std::string open = "<g fill=\"none\"", close = "</g>";
+  std::string kept;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t group = std::min(text.find(open, at), text.size());
+    kept.append(text, at, group - at);
+    if (group == text.size()) break;
+    const std::size_t inside = skip_space(text, std::min(text.find('>', group), text.size() - 1) + 1);
+    const bool is_empty = text.compare(inside, close.size(), close) == 0;
+    at = is_empty ? skip_space(text, inside + close.size()) : inside;
+    if (!is_empty) kept.append(text, group, inside - group);
+  }
+  return kept;
+}
+
+/// Paths with a tenth of a pixel where gnuplot writes hundredths: M12.34,5.67 becomes M12.3,5.6.
+std::string shorten_points(const std::string& text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::string kept;
+  bool is_point = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == 'M' || c == 'L')
+      is_point = true;
+    else if (!is_digit(c) && c != '.' && c != ',')
+      is_point = false;
+    const bool is_hundredth = is_point && i >= 2 && is_digit(c) && is_digit(text[i - 1]) && text[i - 2] == '.';
+    if (!is_hundredth) kept += c;
+  }
+  return kept;
+}
+
+/// Takes out what gnuplot writes and nobody sees.
 void tidy(const std::filesystem::path& svg) {
-  static const std::regex kEmptyGroup("<g fill=\"none\"[^>]*>\\s*</g>\\s*"),
-      kPoint("([ML][0-9]+\\.[0-9])[0-9](,[0-9]+\\.[0-9])[0-9]");
   std::string text;
   {
     std::ifstream in(svg);
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
-  text = std::regex_replace(text, kEmptyGroup, "");
-  std::ofstream(svg) << std::regex_replace(text, kPoint, "$1$2");
+  std::ofstream(svg) << shorten_points(drop_empty_groups(text));
 }
 
 void add_panel(std::string& script, const Panel& panel, int width, int height) {
