@@ -24,6 +24,7 @@ Assembled assemble(const Model& model, const CoordinateVector& x, const Coordina
   place_bodies(model, x, frames);
   locate_contacts(mechanism, x, frames, contacts);
   assemble_mass_matrix(mechanism, frames, contacts, result.M);
+  result.bias.resize(mechanism.coordinate_count);
   assemble_bias(mechanism, frames, contacts, v, model.gravity, result.bias);
   result.N = gyroscopic_matrix(mechanism, frames, contacts, v);
   return result;

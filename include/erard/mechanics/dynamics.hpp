@@ -74,7 +74,7 @@ inline void assemble_mass_matrix(const Mechanism& mechanism, const Frames& frame
 /// Loads that motion and weight need: N(x,v) v - weight                            thesis (4.14), (4.15), (4.19)
 /// Newton-Euler with all second derivatives of the coordinates zero.
 /// @param v    rates (n), indexed by []
-/// @param bias (n) set whole [N m] on hinges, [N] on slides and felts; it stands on the left of M dv/dt + bias = loads
+/// @param bias (n, of that size already) set whole [N m] on hinges, [N] on slides and felts; it stands on the left of M dv/dt + bias = loads
 template <typename Rates, typename Loads>
 void assemble_bias(const Mechanism& mechanism, const Frames& frames, const ContactFrames& contacts, const Rates& v,
                    const Vector2& gravity, Loads& bias) noexcept {
