@@ -319,6 +319,27 @@ TEST(ActionFile, PlacesThatAreNoFilesAreRefused) {
   EXPECT_NE(complaint_of("/dev/zero").find("/dev/zero"), std::string::npos);
 }
 
+TEST(ActionFile, TooManyFeltsWithMassAreToldAgainstTheCapacity) {
+  std::string text = test::read_text(kGrandAction);  // 6 bodies, 14 felts: room for four more
+  const std::string key_front = "\n    KS+:";
+  const std::size_t at = text.find(key_front);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t end = text.find("\n    KS-:", at);
+  ASSERT_NE(end, std::string::npos);
+  const std::string contact = text.substr(at + key_front.size(), end - at - key_front.size());
+  std::string more;
+  for (int i = 0; i < 5; ++i) more += "\n    more" + std::to_string(i) + ":" + contact;
+  text.insert(end, more);
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "felts.yaml", text);
+  ActionOptions options;
+  EXPECT_EQ(load_action(folder / "felts.yaml", options).model.contact_count, 19);
+  options.felts = FeltModel::bodies;
+  const std::string complaint = complaint_of(folder / "felts.yaml", options);
+  EXPECT_NE(complaint.find("has 25 coordinates"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("at most " + std::to_string(kMaxCoordinates)), std::string::npos) << complaint;
+}
+
 TEST(ActionFile, TooManyBodiesAreToldAgainstTheCapacity) {
   std::string text =
       "parameters:\n  z: {value: 0, unit: \"m\", source: \"x\"}\n  r: {value: 0, unit: \"rad\", source: \"x\"}\n"

@@ -61,6 +61,7 @@ class Builder {
     file_.model.gravity = {0, -number(mechanism, "gravity", "m/s^2", Rule::not_negative)};
     read_bodies(mechanism.section("bodies"));
     if (mechanism.optional("contacts")) read_contacts(mechanism.section("contacts"));
+    check_room(mechanism);
     if (mechanism.optional("finger")) read_finger(mechanism.section("finger"));
     if (mechanism.optional("damper")) read_damper(mechanism.section("damper"));
     if (mechanism.optional("events")) read_events(mechanism.section("events"));
@@ -303,6 +304,18 @@ class Builder {
         file_.notes.push_back(
             fmt::format("--set {}={} changes nothing: it is the mass of a felt, and only --felts bodies has such",
                         setting.name, setting.value));
+  }
+
+  void check_room(YamlSection& mechanism) {
+    const auto check = [&](const char* what, int count, int most) {
+      if (count > most)
+        mechanism.reject(mechanism.line("contacts"),
+                         fmt::format("the action has {} {}, must be at most {}", count, what, most));
+    };
+    check("coordinates (one for each body and, with --felts bodies, each felt)", count_coordinates(file_.model),
+          kMaxCoordinates);
+    check("laws (contacts, their friction, dry joints; with --felts bodies one more for each felt)",
+          count_rows(file_.model), kMaxRows);
   }
 
   void read_finger(YamlSection section) {

@@ -12,8 +12,9 @@ namespace erard {
 inline constexpr double kCalmStep = 2.5e-4;
 /// ... and as short as this where the motion is not as guessed [s].
 inline constexpr double kBusyStep = 6.25e-5;
-/// What counts as not as guessed: the accelerations of the masses change by this in one step, rms [m/s^2]. Steps
-/// that may be refused for that cost little more than fixed ones of 250 us and err less than fixed ones of 125: docs/accuracy.md.
+/// What counts as not as guessed: the accelerations of the masses change by this in one step, rms [m/s^2]. Steps that
+/// may be refused for that cost little more than fixed ones of 250 us and err less than fixed ones of 125:
+/// docs/accuracy.md.
 inline constexpr double kSurpriseLimit = 10;
 
 /// How a host drives the engine.

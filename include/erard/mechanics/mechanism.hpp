@@ -98,7 +98,8 @@ inline AncestorTable find_elimination_tree(const Mechanism& mechanism) noexcept 
   return table;
 }
 
-/// Numbers coordinates and rows. The model must be valid: parents before children, counts within capacity.
+/// Numbers coordinates and rows. The model must be valid: parents before children, no more bodies, contacts, coordinates and
+/// rows than capacity.hpp has room for.
 inline Mechanism build_mechanism(const Model& model) noexcept {
   Mechanism mechanism;
   mechanism.model = model;

@@ -28,6 +28,22 @@ struct RowTable {
   std::array<Row, kMaxRows> row;
 };
 
+/// Coordinates of a model: one for each body and each felt with mass. At most kMaxCoordinates fit.
+inline int count_coordinates(const Model& model) noexcept {
+  int count = model.body_count;
+  for (int c = 0; c < model.contact_count; ++c) count += is_felt_body(model.contacts[c]) ? 1 : 0;
+  return count;
+}
+
+/// Rows of a model at most, with everything in play. At most kMaxRows fit.
+inline int count_rows(const Model& model) noexcept {
+  int count = 0;
+  for (int c = 0; c < model.contact_count; ++c)
+    count += 1 + (is_felt_body(model.contacts[c]) ? 1 : 0) + (model.contacts[c].friction > 0 ? 1 : 0);
+  for (int i = 0; i < model.body_count; ++i) count += model.bodies[i].dry > 0 ? 1 : 0;
+  return count;
+}
+
 /// All rows of a model, in the order in which they are swept. Contacts and hinges out of play have none.
 inline RowTable number_rows(const Model& model) noexcept {
   RowTable table;

@@ -15,8 +15,7 @@ struct LastFriction {
 /// @return false where that does not settle the problem: tangents that stick, contacts that are not smooth
 inline bool recall_friction(const Mechanism& mechanism, const Scheme& scheme, Workspace& work,
                             LastFriction& last) noexcept {
-  constexpr double kAtBound =
-      0.99;  // the bound of a tangent moves with its normal impulse; a wrong guess costs time only
+  constexpr double kAtBound = 0.99;  // a tangent's bound moves with its normal impulse; a wrong guess costs time only
   last.is_out = work.is_fixed;
   last.load.fill(0);
   for (int k = 0; k < mechanism.rows.count; ++k) {
@@ -91,9 +90,9 @@ inline bool obeys_friction(const Mechanism& mechanism, const Scheme& scheme, con
   return true;
 }
 
-/// Solves the one-step problem by the friction of the last impulses: one linear system, neither W nor sweeps. Where it obeys all
-/// laws it is the solution, which friction with given bounds has one of. 98 % of the steps of a keystroke are like
-/// that, and cost a quarter less.
+/// Solves the one-step problem by the friction of the last impulses: one linear system, neither W nor sweeps. Where it
+/// obeys all laws it is the solution, which friction with given bounds has one of. Most steps of a keystroke are like
+/// that; what they save: docs/performance.md.
 /// @return whether it does; if so, work.change and work.guess are those of the solution
 inline bool slide_on(const Mechanism& mechanism, const Scheme& scheme, Workspace& work) noexcept {
   LastFriction last;

@@ -227,8 +227,9 @@ inline void accept(const Mechanism& mechanism, const Scheme& scheme, const Drive
 
 /// Advances the mechanism by one step h: time-stepping over all events of the step.
 ///   M(x) dv = (Q(q,v,t) - N(q,v) v) dt + H(q) dr,   laws of the rows                          thesis (5.30)-(5.39)
-/// Newton on the smooth terms outside (felts: one linearisation at d = 0 would see no stiffness), one-step non-smooth
-/// problem inside. Bounded: newton_limit x sweep_limit sweeps.
+/// Newton on the smooth terms outside (the guess is the acceleration of the step before, and is nearly always near enough
+/// for one linearisation; the mechanism is placed again only where it was not), the one-step non-smooth problem inside:
+/// friction as it was where that obeys its laws, else sweeps. Bounded: newton_limit x sweep_limit sweeps.
 /// @param state in: start, out: end of the step; left alone when the report says not_finite or refused
 /// No heap, no exceptions; nothing in `work` is read before it is written.
 inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const Drive& drive, State& state,
@@ -240,11 +241,12 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     return report;
   }
   predict(mechanism, scheme, drive, state, work);
-  place_middle(mechanism, scheme, state, work);
+  bool is_placed = false;
   bool is_done = false;
   SweepReport swept;
   while (!is_done && report.linearisations < scheme.newton_limit) {
     ++report.linearisations;
+    if (!is_placed) place_middle(mechanism, scheme, state, work);
     linearise(mechanism, scheme, drive, state, work);
     if (slide_on(mechanism, scheme, work))
       swept = {0, true, 0};
@@ -253,8 +255,7 @@ inline StepReport step(const Mechanism& mechanism, const Scheme& scheme, const D
     update_velocity(mechanism, scheme, state, work);
     const Movement moved = measure_movement(mechanism, scheme, work);
     const bool is_complete = !find_violations(mechanism, work);
-    const bool is_placed = moved.since_placed <= scheme.placement_tolerance;
-    if (!is_placed) place_middle(mechanism, scheme, state, work);
+    is_placed = moved.since_placed <= scheme.placement_tolerance;
     is_done = is_complete && is_placed && moved.last <= scheme.newton_tolerance;
     report.sweeps += swept.sweeps;
     report.sweep_error = swept.error;

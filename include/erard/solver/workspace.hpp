@@ -20,7 +20,6 @@ struct Workspace {
   Coordinates middle_velocity;  // v_{n+theta}
   Coordinates middle_position;  // x_{n+theta}
   Coordinates end_shift;        // x_{n+1} less the position at which the frames are
-  Coordinates end_position;     // x_{n+1}
 
   // mechanics where the frames were placed: at the middle of an iterate
   Coordinates placed_velocity;  // end velocity of that iterate
