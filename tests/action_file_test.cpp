@@ -324,7 +324,7 @@ TEST(ActionFile, TooManyFeltsWithMassAreToldAgainstTheCapacity) {
   const std::string key_front = "\n    KS+:";
   const std::size_t at = text.find(key_front);
   ASSERT_NE(at, std::string::npos);
-  const std::size_t end = text.find("\n    KS-:", at);
+  const std::size_t end = text.find("\n    KW:", at);  // the next contact
   ASSERT_NE(end, std::string::npos);
   const std::string contact = text.substr(at + key_front.size(), end - at - key_front.size());
   std::string more;
