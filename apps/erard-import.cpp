@@ -1,9 +1,7 @@
 // erard-import: a recorded key position becomes a keystroke.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -13,14 +11,11 @@
 #include "erard/device/error.hpp"
 #include "erard/device/keystroke.hpp"
 #include "erard/device/recording.hpp"
-#include "erard/version.hpp"
+#include "program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kFailure = 1;
-constexpr int kBadInput = 2;
 
 constexpr const char* kPurpose =
     "Turns the recorded position of a key (CSV: t_s, key_front_mm, hammer_sensor_mm) into a keystroke (CSV: t_s,\n"
@@ -127,22 +122,13 @@ void run(Request& request, const std::string& command) {
 
 }  // namespace
 
-int main(int argc, char** argv) try {
+int main(int argc, char** argv) {
   CLI::App app(kPurpose, "erard-import");
   app.footer(kMethod);
   Request request;
   add_options(app, request);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  run(request, quote_command(argc, argv));
-  return 0;
-} catch (const erard::InputError& error) {
-  fmt::print(stderr, "{}\n", error.what());
-  return kBadInput;
-} catch (const std::exception& error) {
-  fmt::print(stderr, "erard-import: {}\n", error.what());
-  return kFailure;
+  return erard::run_program(app, argc, argv, [&] {
+    run(request, quote_command(argc, argv));
+    return erard::kDone;
+  });
 }

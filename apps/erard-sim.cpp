@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <charconv>
@@ -18,7 +17,7 @@
 #include "erard/device/error.hpp"
 #include "erard/device/report.hpp"
 #include "erard/device/results.hpp"
-#include "erard/version.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -313,42 +312,18 @@ int simulate(const Options& o) {
   Outputs outputs(o);
   play(o, plan, outputs);
   if (std::fflush(stdout) != 0) throw std::runtime_error("the summary could not be written to the standard output");
-  if (!plan.summary.result.is_complete) return 130;
+  if (!plan.summary.result.is_complete) return kInterrupted;
   return plan.summary.result.is_finite ? 0 : 1;
-}
-
-/// A message on one line, whatever names it quotes.
-void complain(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  fmt::print(stderr, "{}\n", message);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Plays a keystroke on a keyboard action and tells what the finger feels.", "erard-sim");
-  app.set_version_flag("--version", fmt::format("erard-sim {}", erard::kVersion));
   app.footer(
       "All values are SI. Exit codes: 0 done, 1 the run failed, 2 bad input, 130 interrupted (what is complete is "
       "kept).");
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    complain(fmt::format("erard-sim: {}; see erard-sim --help", error.what()));
-    return 2;
-  }
-  try {
-    return simulate(options);
-  } catch (const erard::InputError& error) {
-    complain(error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    complain(fmt::format("erard-sim: {}", error.what()));
-    return 1;
-  }
+  return erard::run_program(app, argc, argv, [&] { return simulate(options); });
 }

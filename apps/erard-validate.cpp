@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -17,7 +16,7 @@
 
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
-#include "erard/version.hpp"
+#include "program.hpp"
 #include "study/causal_input.hpp"
 #include "study/pendulum.hpp"
 #include "study/published_figures.hpp"
@@ -171,12 +170,38 @@ std::string text_of(const std::vector<Written>& sections) {
   return text;
 }
 
+int run(const std::string& out, const std::vector<std::string>& only) {
+  const std::vector<Study> studies = choose_studies(only);
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    throw std::runtime_error("gnuplot, which draws the plots, is not installed");
+  const sigset_t signals = block_signals();
+  const PictureFolder pictures(out);
+  end_on_signal(pictures.path(), signals);
+  try {
+    const std::vector<Written> sections = write_sections(studies, {pictures.path(), kPictureFolder});
+    const std::lock_guard lock(ending);
+    if (!only.empty()) {
+      fmt::print("{}{}", kPreamble, text_of(sections));
+      pictures.publish_each();
+      return kDone;
+    }
+    OutputFile document(fs::path(out) / "validation.md");
+    document.write(kPreamble + summary(sections) + text_of(sections));
+    document.close();
+    pictures.publish();
+    document.publish();
+    return kDone;
+  } catch (const std::exception&) {
+    const std::lock_guard lock(ending);  // what fails because a signal takes its folder away is no error
+    throw;
+  }
+}
+
 }  // namespace
 
-int main(int argc, char** argv) try {
+int main(int argc, char** argv) {
   CLI::App app{"Computes the studies of the thesis with this engine and writes validation.md with its pictures.",
                "erard-validate"};
-  app.set_version_flag("--version", std::string(kVersion));
   std::string out = "docs";
   std::vector<std::string> only;
   app.add_option("--out", out, "folder for validation.md and images/validation/")->capture_default_str();
@@ -185,36 +210,5 @@ int main(int argc, char** argv) try {
          "print these sections on the terminal and write only their pictures; names with commas of: " + names_of_all())
       ->delimiter(',');
   app.footer("Exit codes: 0 done, 1 failed, 2 wrong arguments, 128 + n ended by signal n. Needs gnuplot.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-
-  const std::vector<Study> studies = choose_studies(only);
-  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
-    throw std::runtime_error("gnuplot, which draws the plots, is not installed");
-  const sigset_t signals = block_signals();
-  const PictureFolder pictures(out);
-  end_on_signal(pictures.path(), signals);
-  const std::vector<Written> sections = write_sections(studies, {pictures.path(), kPictureFolder});
-  const std::lock_guard lock(ending);
-  if (!only.empty()) {
-    fmt::print("{}{}", kPreamble, text_of(sections));
-    pictures.publish_each();
-    return 0;
-  }
-  OutputFile document(fs::path(out) / "validation.md");
-  document.write(kPreamble + summary(sections) + text_of(sections));
-  document.close();
-  pictures.publish();
-  document.publish();
-  return 0;
-} catch (const erard::InputError& error) {
-  fmt::print(stderr, "erard-validate: {}\n", error.what());
-  return 2;
-} catch (const std::exception& error) {
-  const std::lock_guard lock(ending);  // what fails because a signal takes its folder away is no error
-  fmt::print(stderr, "erard-validate: {}\n", error.what());
-  return 1;
+  return run_program(app, argc, argv, [&] { return run(out, only); });
 }
