@@ -1,0 +1,115 @@
+// From the samples of one key to the piston that drives its action: where it is and how fast, in every period.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "erard/haptics/position_watch.hpp"
+#include "erard/haptics/rate_estimator.hpp"
+#include "erard/solver/drive.hpp"
+
+namespace erard {
+
+struct PistonTrackSettings {
+  RateEstimatorSettings estimator;
+  double extrapolation = 0.001;  // a missing sample is guessed from the rate for so long, then the piston stands [s]
+  double realign_speed = 0.1;  // at which the piston goes to where the key is after a silence or a jump, at most [m/s]
+  double realign_time = 0.02;  // and in which the rest of the way falls to 1/e [s]
+  double still_zone = 3e-5;    // a key that stays within it stands still: six times the rms noise of the sensor [m]
+  double still_time = 0.05;    // when it has done so for so long [s]
+};
+
+/// Piston of one key,   Y = x + offset,   Y' = x' + offset'
+///
+/// - A sample that is missing is guessed, x += T x', for `extrapolation`; then x stands with rate zero.
+/// - After that, after a jump, and at the very first, x begins anew where the key is, and the offset takes the
+///   difference: Y is continuous whatever the samples do. The offset then closes,
+///       offset' = -offset / realign_time,   at most realign_speed
+///   slowly enough that the hammer does not reach the string by it.
+/// - Samples that were lost on the way but counted (`lost`) are put between, so that the estimator, which knows samples,
+///   not times, sees the true rate.
+/// - A key that stands still but for its sensor's noise has a piston that stands still to the bit. Then its action comes to rest and
+///   sleeps, Keyboard. When it moves again the offset takes the difference.
+class PistonTrack {
+ public:
+  PistonTrack(const PistonTrackSettings& settings, double period) noexcept : estimator_(settings.estimator, period) {}
+
+  /// A sample that counts. @param position [m], @param lost samples before it, @param resumed it may lie anywhere
+  void take(const PistonTrackSettings& settings, double period, double position, int lost, bool resumed) noexcept {
+    if (is_still_ && !resumed && missed_ == 0 && std::abs(position - middle_) <= settings.still_zone) return;
+    if (resumed || is_still_ || missed_ * period > settings.extrapolation) {
+      begin(position);
+    } else {
+      const int between = std::clamp(lost - missed_, 0, kMostBetween);
+      for (int i = 1; i <= between; ++i) estimator_.update(x_ + (position - x_) * i / (between + 1));
+      rate_ = estimator_.update(position);
+      x_ = position;
+    }
+    missed_ = 0;
+    look_for_stillness(settings, period);
+  }
+
+  /// No sample that counts in this period.
+  void miss(const PistonTrackSettings& settings, double period) noexcept {
+    if (missed_ < kLong) ++missed_;
+    if (is_still_) return;
+    if (missed_ * period <= settings.extrapolation) {
+      x_ += period * rate_;
+      estimator_.update(x_);
+    } else {
+      rate_ = 0;
+    }
+  }
+
+  /// The piston at the end of the period. @return [m], [m/s]
+  DriveSample advance(const PistonTrackSettings& settings, double period) noexcept {
+    if (is_still_ && piston_.rate == 0) return piston_;
+    const double most = settings.realign_speed * period;
+    const double closed = std::clamp(offset_ * std::min(period / settings.realign_time, 1.0), -most, most);
+    offset_ -= std::abs(offset_) < kNothing ? offset_ : closed;
+    piston_ = is_still_ ? DriveSample{piston_.value, 0} : DriveSample{x_ + offset_, rate_ - closed / period};
+    return piston_;
+  }
+
+  const DriveSample& piston() const noexcept { return piston_; }
+  bool is_still() const noexcept { return is_still_; }
+  /// Whether the piston is where the key is.
+  bool is_aligned() const noexcept { return std::abs(offset_) <= kAligned; }
+
+ private:
+  static constexpr int kMostBetween = 8;    // more and the estimator has forgotten anyway
+  static constexpr int kLong = 1 << 20;     // periods
+  static constexpr double kAligned = 1e-4;  // [m] 0.65 N of the thesis's finger
+  static constexpr double kNothing = 1e-9;  // [m] a thousandth of what sensors resolve
+
+  void begin(double position) noexcept {
+    estimator_.reset(position);
+    x_ = position;
+    rate_ = 0;
+    offset_ = piston_.value - position;
+    is_still_ = false;
+    sum_ = 0;
+    count_ = 0;
+  }
+
+  /// Whether all samples for still_time lay around their running mean.
+  void look_for_stillness(const PistonTrackSettings& settings, double period) noexcept {
+    if (count_ > 0 && std::abs(x_ - sum_ / count_) > settings.still_zone) sum_ = 0, count_ = 0;
+    sum_ += x_;
+    ++count_;
+    if (count_ * period < settings.still_time || std::abs(offset_) > settings.still_zone) return;
+    is_still_ = true;
+    middle_ = sum_ / count_;
+  }
+
+  double middle_ = 0;  // of the samples of a key that stands still [m]
+  bool is_still_ = false;
+  int missed_ = 0;                        // periods since the last sample that counted
+  DriveSample piston_;                    // now
+  double x_ = 0, rate_ = 0, offset_ = 0;  // [m], [m/s], [m]
+  double sum_ = 0;                        // of samples [m]
+  int count_ = 0;
+  RateEstimator estimator_;
+};
+
+}  // namespace erard

@@ -1,0 +1,250 @@
+// From "a position message arrived" to "this force leaves": everything a device renders, without clock, thread or network.
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "erard/haptics/actuator.hpp"
+#include "erard/haptics/fault.hpp"
+#include "erard/haptics/finger.hpp"
+#include "erard/haptics/guard.hpp"
+#include "erard/haptics/hammer_watch.hpp"
+#include "erard/haptics/keyboard.hpp"
+#include "erard/haptics/passivity.hpp"
+#include "erard/haptics/piston_track.hpp"
+#include "erard/haptics/position_watch.hpp"
+
+namespace erard {
+
+/// How a device is rendered; config/device.yaml.
+struct RenderSettings {
+  int keys = 1;       // 1 .. 88
+  TickSettings tick;  // drive piston or key, rate
+  SleepSettings sleep = SleepSettings::eager();
+  double coupling_stiffness = 6500;  // a of the Kelvin-Voigt element between device and simulated key [N/m]
+  double coupling_damping = 134;     // b [N s/m]
+  PositionWatchSettings watch;
+  PistonTrackSettings track;
+  PassivitySettings passivity;
+  GuardSettings guard;
+  ActuatorSettings actuator;
+};
+
+/// What a period begins with.
+struct PeriodInput {
+  std::int64_t host_time = 0;                // of this period, never decreasing [ns]
+  const PositionMessage* message = nullptr;  // the newest since the last period, as it came; null: none
+};
+
+struct KeyOutput {
+  double force = 0;            // out, upwards on the key, against the finger [N]
+  double current = 0;          // to ask of the actuator [A]
+  double expected_force = 0;   // that it is expected to make of it [N]
+  double simulated_force = 0;  // of the finger on the simulated key, before all that held it back [N]
+  DriveSample piston;          // that drove the simulated key, at the end of the period [m], [m/s]
+  double fade = 0;             // 0 .. 1
+  Fault faults = Fault::none;
+};
+
+struct PeriodOutput {
+  std::int64_t host_time = 0;      // as it came in [ns]
+  Fault message = Fault::none;     // what was wrong with the message; gap alone: it counted
+  bool has_input = false;          // a message came and counted
+  Fault faults = Fault::none;      // of the message and of all keys
+  int asleep = 0;                  // keys
+  std::span<const KeyOutput> key;  // valid until the next period
+  std::span<const HammerEvent> blow;
+};
+
+/// n keys, one call a period:
+///   message -> MessageWatch -> KeyWatch -> PistonTrack -> Keyboard (the actions) -> Passivity -> Guard -> Actuator
+/// The result is a function of the inputs since the start and nothing else: a recording of them gives every output again,
+/// bit for bit. Once built: no heap, no exceptions, no locks.
+class Renderer {
+ public:
+  static constexpr int kMaxKeys = 88;
+
+  /// @param model  valid, has a finger; its Kelvin-Voigt element is replaced by the coupling
+  /// @param roles  of the string and the hammer, for blows
+  Renderer(const Model& model, const ActionRoles& roles, const RenderSettings& settings)
+      : settings_(settings),
+        roles_(roles),
+        period_(settings.tick.period),
+        allowance_(noise_energy(settings)),
+        message_watch_(settings.watch, settings.keys),
+        keyboard_(coupled(model, settings), settings.keys, settings.tick, settings.sleep),
+        key_(static_cast<std::size_t>(settings.keys), Key(settings)),
+        input_(key_.size()),
+        output_(key_.size()),
+        blow_(key_.size()) {
+    assert(settings.keys >= 1 && settings.keys <= kMaxKeys);
+  }
+
+  int size() const noexcept { return settings_.keys; }
+  const RenderSettings& settings() const noexcept { return settings_; }
+  const Keyboard& keyboard() const noexcept { return keyboard_; }
+  const FaultCounters& counters() const noexcept { return counters_; }
+  std::uint64_t lost_messages() const noexcept { return lost_messages_; }  // by their sequence
+
+  /// Advances everything by one period. The output is valid until the next call.
+  const PeriodOutput& period(const PeriodInput& in) noexcept {
+    result_ = {};
+    result_.host_time = in.host_time;
+    take_message(in);
+    for (int k = 0; k < size(); ++k) follow(k, in);
+    blow_count_ = 0;
+    const std::span<const double> forces = keyboard_.tick(
+        input_, [this](int k, const State& state, const StepReport&, double force) noexcept { see(k, state, force); });
+    for (int k = 0; k < size(); ++k) render(k, forces[k]);
+    counters_.add(result_.message);
+    result_.faults |= result_.message;
+    result_.asleep = keyboard_.asleep_count();
+    result_.key = output_;
+    result_.blow = std::span(blow_).first(static_cast<std::size_t>(blow_count_));
+    return result_;
+  }
+
+ private:
+  struct Key {
+    explicit Key(const RenderSettings& settings) noexcept : track(settings.track, settings.tick.period) {}
+
+    std::int64_t last_good = 0;  // host time of the last sample that counted [ns]
+    bool is_live = false;        // there was one within the timeout
+    KeyWatch watch;
+    Guard guard;
+    Actuator actuator;
+    Passivity passivity;
+    HammerWatch hammer;
+    double y = 0, rate = 0;  // of the simulated key, now [m], [m/s]
+    double force = 0;        // on it, at the last internal step [N]
+    double given = 0;        // to it this period [J]
+    double way_from = 0;     // piston of the period before [m]
+    PistonTrack track;       // large, and its first lines are what a resting key looks at
+  };
+
+  static Model coupled(Model model, const RenderSettings& settings) noexcept {
+    model.finger.stiffness = settings.coupling_stiffness;
+    model.finger.damping = settings.coupling_damping;
+    return model;
+  }
+
+  static double noise_energy(const RenderSettings& s) noexcept {
+    const bool is_piston = s.tick.drive == DriveKind::piston;
+    const double b = is_piston ? s.coupling_damping : s.passivity.safe_damping;
+    const double noise = s.passivity.sensor_noise;
+    return (1.5 * b / s.tick.period + (is_piston ? s.coupling_stiffness : 0.0)) * noise * noise;
+  }
+
+  void take_message(const PeriodInput& in) noexcept {
+    if (in.message == nullptr) return;
+    result_.message = message_watch_.look(*in.message, in.host_time);
+    result_.has_input = result_.message == Fault::none || result_.message == Fault::gap;
+    message_ = in.message;
+    if (result_.has_input) lost_messages_ += message_watch_.lost();
+  }
+
+  /// Position of one key: judged, followed, or missed.
+  void follow(int k, const PeriodInput& in) noexcept {
+    Key& key = key_[k];
+    Fault faults = Fault::none;
+    SampleVerdict verdict = SampleVerdict::rejected;
+    if (result_.has_input)
+      verdict =
+          key.watch.look(settings_.watch, message_->position[k], static_cast<double>(message_->device_time) * 1e-9,
+                         period_, message_watch_.is_first(), faults);
+    if (verdict == SampleVerdict::rejected) {
+      key.track.miss(settings_.track, period_);
+    } else {
+      key.last_good = in.host_time;
+      key.is_live = true;
+      const int lost = static_cast<int>(std::min<std::uint64_t>(message_watch_.lost(), 1000));
+      key.track.take(settings_.track, period_, message_->position[k], lost, verdict == SampleVerdict::resumed);
+    }
+    const double age = static_cast<double>(in.host_time - key.last_good) * 1e-9;
+    if (age > settings_.watch.timeout) key.is_live = false;
+    if (!key.is_live) faults |= Fault::no_input;
+    if (!key.track.is_aligned()) faults |= Fault::realigned;
+    output_[k].faults = faults;
+    key.way_from = key.track.piston().value;
+    input_[k] = key.track.advance(settings_.track, period_);
+  }
+
+  /// One internal step of a key that is awake.
+  void see(int k, const State& state, double force) noexcept {
+    Key& key = key_[k];
+    const Mechanism& mechanism = keyboard_.mechanism(k);
+    const double y = key_position(mechanism.model, state);
+    key.given += 0.5 * (key.force + force) * (y - key.y);
+    key.force = force;
+    key.y = y;
+    key.rate = key_velocity(mechanism.model, state);
+    if (key.hammer.observe(mechanism, roles_, state))
+      blow_[static_cast<std::size_t>(blow_count_++ % size())] = {k, state.time, key.hammer.speed()};
+  }
+
+  /// Force of one key on its way out.
+  void render(int k, double simulated) noexcept {
+    Key& key = key_[k];
+    KeyOutput& out = output_[k];
+    const StepStatus status = keyboard_.statuses()[k];
+    const bool is_finite = status != StepStatus::not_finite;
+    if (status == StepStatus::not_converged && !keyboard_.is_asleep(k)) out.faults |= Fault::step_not_converged;
+    out.piston = input_[k];
+    out.simulated_force = simulated;
+    const bool is_well = key.is_live && key.track.is_aligned() && is_finite;
+    const double wanted = is_finite ? passive_force(key, out, is_well) : std::numeric_limits<double>::quiet_NaN();
+    out.force = key.guard.pass(settings_.guard, period_, wanted, is_well, out.faults);
+    out.fade = key.guard.fade();
+    const ActuatorCommand command =
+        key.actuator.command(settings_.actuator, period_, out.force, out.piston.rate, out.faults);
+    out.current = command.current;
+    out.expected_force = command.force;
+    key.passivity.remember(command.force);
+    key.given = 0;
+    if (out.faults != Fault::none) counters_.add(out.faults);
+    result_.faults |= out.faults;
+  }
+
+  /// What is to be rendered of the simulated force.
+  double passive_force(Key& key, const KeyOutput& out, bool is_well) noexcept {
+    const bool is_piston = settings_.tick.drive == DriveKind::piston;
+    const double a = settings_.coupling_stiffness, b = settings_.coupling_damping;
+    const double stretch = is_piston ? out.piston.value - key.y : 0.0;
+    const double stored = 0.5 * a * std::max(stretch, 0.0) * std::max(stretch, 0.0);
+    const PassivitySettings& passivity = settings_.passivity;
+    // a brake cannot give energy; a force that is fading has little to do with the simulated one
+    if (!passivity.is_on || settings_.actuator.kind == ActuatorKind::mr_brake) return out.simulated_force;
+    if (!is_well || key.guard.fade() < 1) {
+      key.passivity.restart(passivity, stored);
+      return out.simulated_force;
+    }
+    Fault& faults = output_[static_cast<std::size_t>(&out - output_.data())].faults;
+    key.passivity.observe(passivity, period_, allowance_, {out.piston.value - key.way_from, key.given, stored}, faults);
+    const double g = key.passivity.share();
+    if (g == 0) return out.simulated_force;
+    if (!is_piston) return out.simulated_force + g * passivity.safe_damping * out.piston.rate;
+    const double damping = b + g * (passivity.safe_damping - b);
+    return std::max(0.0, a * stretch + damping * (out.piston.rate - key.rate));
+  }
+
+  RenderSettings settings_;
+  ActionRoles roles_;
+  double period_;     // [s]
+  double allowance_;  // n of Passivity [J]
+  MessageWatch message_watch_;
+  Keyboard keyboard_;
+  std::vector<Key> key_;
+  std::vector<DriveSample> input_;
+  std::vector<KeyOutput> output_;
+  std::vector<HammerEvent> blow_;
+  int blow_count_ = 0;
+  const PositionMessage* message_ = nullptr;
+  FaultCounters counters_;
+  std::uint64_t lost_messages_ = 0;
+  PeriodOutput result_;
+};
+
+}  // namespace erard
