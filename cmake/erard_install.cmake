@@ -14,6 +14,13 @@ if(ERARD_BUILD_DEVICE)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/" DESTINATION "${CMAKE_INSTALL_DATADIR}/erard")
 endif()
 
+if(ERARD_BUILD_LINK)
+  install(TARGETS erard_link EXPORT erardLinkTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT erardLinkTargets NAMESPACE erard:: DESTINATION "${package_dir}")
+  install(DIRECTORY "${ERARD_MESSAGE_CPP_DIR}/erard" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(FILES ${ERARD_MESSAGE_FILES} DESTINATION "${CMAKE_INSTALL_DATADIR}/erard/messages")
+endif()
+
 if(ERARD_BUILD_SPARSE)
   install(TARGETS erard_sparse EXPORT erardSparseTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(EXPORT erardSparseTargets NAMESPACE erard:: DESTINATION "${package_dir}")

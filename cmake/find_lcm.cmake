@@ -1,0 +1,20 @@
+# LCM: ERARD_LCM_INCLUDE_DIR, ERARD_LCM_LIBRARY and ERARD_LCM_GEN.
+# From LCM's own CMake package where there is one (1.5, for instance out of its Python wheel, see docs/lcm.md); else what
+# Debian and Ubuntu have (1.3.1): no CMake package, and a pkg-config file that asks for a package it does not depend on.
+if(NOT ERARD_LCM_LIBRARY)
+  find_package(lcm CONFIG QUIET)
+endif()
+if(lcm_FOUND)
+  get_target_property(lcm_include_dir lcm INTERFACE_INCLUDE_DIRECTORIES)
+  get_target_property(lcm_library lcm LOCATION)
+  get_target_property(lcm_gen lcm-gen LOCATION)
+  set(ERARD_LCM_INCLUDE_DIR "${lcm_include_dir}" CACHE PATH "Folder of lcm/lcm.h")
+  set(ERARD_LCM_LIBRARY "${lcm_library}" CACHE FILEPATH "LCM's library")
+  set(ERARD_LCM_GEN "${lcm_gen}" CACHE FILEPATH "LCM's generator of message types")
+else()
+  find_path(ERARD_LCM_INCLUDE_DIR lcm/lcm.h REQUIRED)
+  find_library(ERARD_LCM_LIBRARY lcm REQUIRED)
+  find_program(ERARD_LCM_GEN lcm-gen REQUIRED)
+endif()
+mark_as_advanced(ERARD_LCM_INCLUDE_DIR ERARD_LCM_LIBRARY ERARD_LCM_GEN)
+message(STATUS "LCM: ${ERARD_LCM_LIBRARY}")
