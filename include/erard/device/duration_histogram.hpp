@@ -10,9 +10,21 @@ namespace erard {
 /// Counts of durations in bins of 1 % width from 10 ns to 10 s; shorter and longer ones go to the first and the last bin.
 class DurationHistogram {
  public:
-  void add(double duration) noexcept {
+  static constexpr std::size_t kBins = 2083;  // to 10 s
+
+  DurationHistogram() = default;
+  DurationHistogram(const std::array<long, kBins>& count, double worst) noexcept : count_(count), worst_(worst) {
+    for (const long each : count_) total_ += each;
+  }
+
+  /// Bin of a duration [s].
+  static std::size_t bin(double duration) noexcept {
     const double bin = std::log(std::max(duration, kShortest) / kShortest) / kLogWidth;
-    ++count_[static_cast<std::size_t>(std::min(bin, kBins - 1.0))];
+    return static_cast<std::size_t>(std::min(bin, static_cast<double>(kBins - 1)));
+  }
+
+  void add(double duration) noexcept {
+    ++count_[bin(duration)];
     ++total_;
     worst_ = std::max(worst_, duration);
   }
@@ -28,11 +40,11 @@ class DurationHistogram {
     return 0;
   }
   double worst() const noexcept { return worst_; }  // [s]
+  long total() const noexcept { return total_; }
 
  private:
   static constexpr double kShortest = 1e-8;                 // [s]
   static constexpr double kLogWidth = 0.00995033085316808;  // ln 1.01
-  static constexpr int kBins = 2083;                        // to 10 s
   std::array<long, kBins> count_{};
   long total_ = 0;
   double worst_ = 0;
