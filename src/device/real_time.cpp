@@ -16,15 +16,17 @@ namespace erard {
 namespace {
 
 constexpr const char* kLatencyDevice = "/dev/cpu_dma_latency";
+constexpr std::size_t kRoom = std::size_t{64} << 20;  // [B] that may still be asked for: threads, recorder
 constexpr std::size_t kStack = 256 * 1024;  // [B] touched: several times what the engine and the C library use
 
 std::string refused(int error) { return fmt::format("refused ({})", std::strerror(error)); }
 
-std::string limits_remedy(const char* item, const char* value) {
+std::string limits_remedy(const char* item, const std::string& value) {
   return fmt::format(
-      "put `@audio - {} {}` into /etc/security/limits.d/erard.conf and log in again, or run as root (in a container: "
-      "--ulimit {}={})",
-      item, value, item, std::strcmp(value, "unlimited") == 0 ? "-1" : value);
+      "allow it with `echo \"$USER - {0} {1}\" | sudo tee -a /etc/security/limits.d/erard.conf` and log in again, or "
+      "run "
+      "as root",
+      item, value);
 }
 
 std::string scheduler_in_force() {
@@ -53,10 +55,19 @@ long locked_kB() {
   return -1;
 }
 
+/// Whether memory taken from now on can be locked too: under a limit it could not be had at all.
+bool has_room_to_grow() {
+  void* probe = mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (probe == MAP_FAILED) return false;
+  munmap(probe, kRoom);
+  return true;
+}
+
 /// Writes to every page of the stack that the real-time work may reach.
 [[gnu::noinline]] void touch_stack() {
-  volatile char stack[kStack];
+  char stack[kStack];
   for (std::size_t i = 0; i < kStack; i += 4096) stack[i] = 0;
+  asm volatile("" : : "r"(stack) : "memory");  // or it would be optimised away
 }
 
 }  // namespace
@@ -78,7 +89,7 @@ Grant request_fifo(int priority) {
         "root too is refused where the control group has no real-time budget: `echo 950000 > "
         "/sys/fs/cgroup/cpu/<group>/cpu.rt_runtime_us`, or in a container --cap-add SYS_NICE";
   else
-    grant.remedy = limits_remedy("rtprio", std::to_string(priority).c_str());
+    grant.remedy = limits_remedy("rtprio", std::to_string(priority));
   return grant;
 }
 
@@ -105,12 +116,14 @@ Grant request_memory_lock() {
   Grant grant{"memory", "locked", {}, true, {}};
   const int error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
   touch_stack();
-  if (error == 0) {
+  const bool is_limited = error == 0 && !has_room_to_grow();
+  if (is_limited) munlockall();
+  if (error == 0 && !is_limited) {
     grant.granted = fmt::format("locked, {} MB", (locked_kB() + 999) / 1000);
     return grant;
   }
   grant.is_granted = false;
-  grant.granted = refused(error);
+  grant.granted = is_limited ? "refused (the limit leaves no room to grow)" : refused(error);
   grant.remedy = limits_remedy("memlock", "unlimited");
   return grant;
 }
@@ -139,9 +152,8 @@ CpuLatencyHold::CpuLatencyHold() : grant_{"CPU sleep", "wake at once", {}, true,
   grant_.remedy =
       error == ENOENT
           ? fmt::format("make {} visible to this process (in a container: --device {})", kLatencyDevice, kLatencyDevice)
-          : fmt::format(
-                "allow it with `echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"audio\", MODE=\"0660\"' > "
-                "/etc/udev/rules.d/99-erard.rules && udevadm trigger --name-match cpu_dma_latency`, or run as root");
+          : "allow it with `echo 'KERNEL==\"cpu_dma_latency\", MODE=\"0666\"' | sudo tee "
+            "/etc/udev/rules.d/99-erard.rules && sudo udevadm trigger --name-match cpu_dma_latency`, or run as root";
 }
 
 CpuLatencyHold::~CpuLatencyHold() {

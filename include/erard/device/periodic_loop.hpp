@@ -61,9 +61,9 @@ class PeriodicLoop {
   LoopSummary run(Work&& work, Wait&& wait) noexcept {
     static_assert(std::is_nothrow_invocable_r_v<bool, Work&, const Period&>);
     static_assert(std::is_nothrow_invocable_r_v<std::int64_t, Wait&, std::int64_t>);
-    const ThreadUsage before = clock_.thread_usage();
     Period period;
     period.due_ns = first_grid_point(clock_.now());
+    const ThreadUsage before = clock_.thread_usage();
     std::int64_t cpu = clock_.thread_cpu_time();
     while (!is_stopped_.load(std::memory_order_relaxed)) {
       period.due_ns = wait(period.due_ns);
