@@ -1,51 +1,11 @@
 #include "erard/device/action_file.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
-
 #include "erard/mechanics/contact_frames.hpp"
 #include "parameters.hpp"
+#include "yaml_file.hpp"
 
 namespace erard {
 namespace {
-
-constexpr std::size_t kMaxBytes = 4u << 20;  // a hundred times the grand action; a pipe without end stops here
-
-std::string read_text(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw InputError(fmt::format("{}: is a folder, must be an action file (YAML)", path.string()));
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  std::string text(kMaxBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > kMaxBytes)
-    throw InputError(fmt::format("{}: does not end, must be at most {} MiB", path.string(), kMaxBytes >> 20));
-  int line = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') ++line;
-    if (c == '\n' && text.compare(i + 1, 3, "---") == 0)
-      throw InputError(fmt::format("{}:{}: a second YAML document begins, must hold one", path.string(), line));
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t')
-      throw InputError(fmt::format("{}:{}: byte 0x{:02x} is not text, must be an action file (YAML)", path.string(),
-                                   line, static_cast<unsigned char>(c)));
-  }
-  return text;
-}
-
-YAML::Node parse(const std::filesystem::path& path) {
-  try {
-    return YAML::Load(read_text(path));
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: is not valid YAML ({}), was the file cut short?", path.string(),
-                                 error.mark.line + 1, printable(error.msg)));
-  }
-}
 
 /// Builds the model from the section `mechanism`.
 class Builder {
@@ -386,7 +346,7 @@ class Builder {
 }  // namespace
 
 ActionFile load_action(const std::filesystem::path& path, const ActionOptions& options) {
-  const YAML::Node root = parse(path);
+  const YAML::Node root = load_yaml(path, "an action file");
   const std::string file = path.string();
   YamlSection sections(file, "", root, 1);
   YamlSection parameter_section = sections.section("parameters");

@@ -14,7 +14,6 @@ struct RealTimeSettings {
   int priority = 80;   // SCHED_FIFO, 1 .. 99; 0: ordinary scheduling
   int cpu = -1;        // the thread is bound to; -1: any
   int phase_us = 150;  // from the device's sample to the start of the host's period
-  bool lock_memory = true;
 };
 
 /// Where messages come from and go to.
@@ -32,7 +31,7 @@ struct DeviceSettings {
 };
 
 /// Reads config/device.yaml or another file of that form; docs/device.md has the keys.
-/// Strict: every key is there once, every value {value, source} within its rule.
+/// Strict: every key is there once, every value within its rule; keys that are not known are refused.
 /// Throws InputError with one sentence "file:line: key = value, rule".
 DeviceSettings load_device(const std::filesystem::path& file);
 

@@ -44,6 +44,8 @@ struct JointEnergy {
 /// damping b on a lever of mass m is unstable above b = m / T with a period of delay, and adding more, as Hannaford and Ryu do, makes it worse.
 class Passivity {
  public:
+  static constexpr int kMaxDelay = 6;  // periods
+
   /// Looks at what the last period did. @param allowance  n [J]
   void observe(const PassivitySettings& settings, double period, double allowance, const JointEnergy& now,
                Fault& faults) noexcept {
@@ -74,12 +76,12 @@ class Passivity {
   double surplus() const noexcept { return surplus_; }  // D [J]
 
  private:
-  static constexpr int kMemory = 8;         // periods of delay
+  static constexpr int kMemory = kMaxDelay + 2;
   static constexpr double kNothing = 1e-3;  // of the share
 
   /// Mean over the period that ends now of the force that acted on the key: it was asked for loop_delay earlier.
   double acting_force(const PassivitySettings& settings, double period) const noexcept {
-    const double delay = std::clamp(settings.loop_delay / period, 0.0, kMemory - 2.0);
+    const double delay = std::clamp(settings.loop_delay / period, 0.0, double{kMaxDelay});
     const int whole = static_cast<int>(delay);
     const double part = delay - whole;
     return (1 - part) * asked(whole) + part * asked(whole + 1);
