@@ -20,6 +20,8 @@ Sender::Sender(const std::string& url) {
   std::string whole = url;
   if (url.starts_with("udpm://")) {
     const LcmAddress address = parse_lcm_address(url);
+    if (!address.is_group())
+      throw InputError(fmt::format("{}: is no multicast group, must be 224.0.0.0 to 239.255.255.255 to send to", url));
     check_lcm_route(address);  // LCM would name a random address and recommend a route over the network
     whole =
         fmt::format("udpm://{}?ttl={}", address.to_string(), address.ttl);  // LCM takes no default for the port alone
