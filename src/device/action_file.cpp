@@ -345,9 +345,13 @@ class Builder {
 
 }  // namespace
 
-ActionFile load_action(const std::filesystem::path& path, const ActionOptions& options) {
-  const YAML::Node root = load_yaml(path, "an action file");
-  const std::string file = path.string();
+ActionFile load_action(const std::filesystem::path& file, const ActionOptions& options) {
+  return load_action(read_config(file, "an action file"), options);
+}
+
+ActionFile load_action(const ConfigText& config, const ActionOptions& options) {
+  const YAML::Node root = parse_yaml(config);
+  const std::string& file = config.name;
   YamlSection sections(file, "", root, 1);
   YamlSection parameter_section = sections.section("parameters");
   YamlSection mechanism = sections.section("mechanism");

@@ -170,8 +170,10 @@ LinkSettings read_link(YamlSection section) {
 
 }  // namespace
 
-DeviceSettings load_device(const std::filesystem::path& path) {
-  YamlSection device(path.string(), "", load_yaml(path, "a device file"), 1);
+DeviceSettings load_device(const std::filesystem::path& file) { return load_device(read_config(file, "a device file")); }
+
+DeviceSettings load_device(const ConfigText& config) {
+  YamlSection device(config.name, "", parse_yaml(config), 1);
   DeviceSettings settings;
   RenderSettings& rendering = settings.rendering;
   rendering.keys = whole_number(device, "keys", from_to(1, Renderer::kMaxKeys));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "erard/device/error.hpp"
+#include "erard/device/config_text.hpp"
 #include "erard/haptics/events.hpp"
 #include "erard/model/model.hpp"
 
@@ -60,5 +60,6 @@ struct ActionOptions {
 /// Throws InputError with one sentence "file:line: key = value, rule", or "--set NAME=VALUE: ..." where that is to blame.
 /// Nothing is half-loaded: the result exists only when all of it is right.
 ActionFile load_action(const std::filesystem::path& file, const ActionOptions& options = {});
+ActionFile load_action(const ConfigText& config, const ActionOptions& options = {});
 
 }  // namespace erard

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "erard/device/error.hpp"
+#include "erard/device/config_text.hpp"
 #include "erard/haptics/renderer.hpp"
 
 namespace erard {
@@ -34,5 +34,6 @@ struct DeviceSettings {
 /// Strict: every key is there once, every value within its rule; keys that are not known are refused.
 /// Throws InputError with one sentence "file:line: key = value, rule".
 DeviceSettings load_device(const std::filesystem::path& file);
+DeviceSettings load_device(const ConfigText& config);
 
 }  // namespace erard

@@ -82,6 +82,9 @@ class PeriodicLoop {
   /// Moves the grid from the next period on [ns]; for the work, see PhaseLock.
   void shift(std::int64_t by_ns) noexcept { shift_ns_ += by_ns; }
 
+  /// Periods missed before this one; for the work.
+  std::int64_t missed() const noexcept { return status_.missed; }
+
   /// Ends run() after the period under way. Also for signal handlers.
   void stop() noexcept { is_stopped_.store(true, std::memory_order_relaxed); }
 

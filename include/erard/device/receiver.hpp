@@ -7,9 +7,18 @@
 #include <string>
 
 #include "erard/device/datagram_listener.hpp"
+#include "erard/device/doorbell.hpp"
 #include "erard/device/message_ring.hpp"
+#include "erard/device/monotonic_clock.hpp"
 
 namespace erard {
+
+/// A message and when it came.
+template <typename Message>
+struct Arrival {
+  Message message{};
+  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC [ns]
+};
 
 /// What a receiver did with what came in; counts since it was built.
 struct ReceiverCounts {
@@ -38,13 +47,27 @@ class Receiver {
 
   /// Takes the oldest message that waits. Call it until it says no: the last one is the newest. At most kRoom times when
   /// the caller must be bounded, whoever floods the channel.
-  /// @return false when none waits; `message` is as it was
-  bool take(Message& message) noexcept {
-    const Message* const oldest = ring_.oldest();
+  /// @return false when none waits; `arrival` is as it was
+  bool take(Arrival<Message>& arrival) noexcept {
+    const Arrival<Message>* const oldest = ring_.oldest();
     if (oldest == nullptr) return false;
-    message = *oldest;
+    arrival = *oldest;
     ring_.release();
     return true;
+  }
+  bool take(Message& message) noexcept {
+    const Arrival<Message>* const oldest = ring_.oldest();
+    if (oldest == nullptr) return false;
+    message = oldest->message;
+    ring_.release();
+    return true;
+  }
+
+  /// Sleeps until a message waits to be taken, or to an instant of CLOCK_MONOTONIC [ns]. From one thread at a time.
+  void wait(std::int64_t until_ns) noexcept {
+    is_awaited_ = true;
+    if (ring_.oldest() == nullptr) doorbell_.wait(until_ns);
+    is_awaited_ = false;
   }
 
   ReceiverCounts counts() const noexcept { return {accepted_, wrong_type_, wrong_size_, overflow_}; }
@@ -59,17 +82,21 @@ class Receiver {
       ++wrong_type_;
     } else if (payload.size() != size_) {
       ++wrong_size_;
-    } else if (Message* const room = ring_.room()) {
-      room->decode(payload.data(), 0, static_cast<int>(payload.size()));  // cannot fail: type and size are right
+    } else if (Arrival<Message>* const room = ring_.room()) {
+      room->message.decode(payload.data(), 0, static_cast<int>(payload.size()));  // cannot fail: type and size are right
+      room->time_ns = MonotonicClock{}.now();
       ring_.commit();
       ++accepted_;
+      if (is_awaited_) doorbell_.ring();
     } else {
       ++overflow_;
     }
   }
 
   const std::size_t size_ = static_cast<std::size_t>(Message{}.getEncodedSize());
-  MessageRing<Message, kRoom> ring_;
+  MessageRing<Arrival<Message>, kRoom> ring_;
+  Doorbell doorbell_;
+  std::atomic<bool> is_awaited_{false};
   std::atomic<std::int64_t> accepted_{0}, wrong_type_{0}, wrong_size_{0}, overflow_{0};
   DatagramListener listener_;  // last: its thread uses the others
 };

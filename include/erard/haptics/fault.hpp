@@ -32,12 +32,22 @@ enum class Fault : std::uint32_t {
   current_limited = 1u << 16,
   thermal_limited = 1u << 17,
   cannot_push = 1u << 18,  // a brake was asked for a force along the motion
+  // of the host
+  wrong_type = 1u << 19,         // another type or kind of message on the channel
+  overflow = 1u << 20,           // more messages than a period takes
+  publish_failed = 1u << 21,     // a force could not be sent
+  period_missed = 1u << 22,      // the work of a period ended after the next one was due
+  recording_stopped = 1u << 23,  // the disk refused
 };
-inline constexpr int kFaultCount = 19;
+inline constexpr int kFaultCount = 24;
 
 constexpr Fault operator|(Fault a, Fault b) noexcept {
   return static_cast<Fault>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
+constexpr Fault operator&(Fault a, Fault b) noexcept {
+  return static_cast<Fault>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
+}
+constexpr Fault operator~(Fault a) noexcept { return static_cast<Fault>(~static_cast<std::uint32_t>(a)); }
 constexpr Fault& operator|=(Fault& a, Fault b) noexcept { return a = a | b; }
 constexpr bool has(Fault all, Fault one) noexcept {
   return (static_cast<std::uint32_t>(all) & static_cast<std::uint32_t>(one)) != 0;
@@ -51,7 +61,8 @@ inline constexpr const char* fault_name(int i) noexcept {
                                                        "no_input",           "realigned",       "step_not_finite",
                                                        "step_not_converged", "passivity_acted", "force_limited",
                                                        "slew_limited",       "current_limited", "thermal_limited",
-                                                       "cannot_push"};
+                                                       "cannot_push",        "wrong_type",      "overflow",
+                                                       "publish_failed",     "period_missed",   "recording_stopped"};
   return names[static_cast<std::size_t>(i)];
 }
 

@@ -36,7 +36,7 @@ struct RenderSettings {
 /// What a period begins with.
 struct PeriodInput {
   std::int64_t host_time = 0;                // of this period, never decreasing [ns]
-  const PositionMessage* message = nullptr;  // the newest since the last period, as it came; null: none
+  std::span<const PositionMessage> messages;  // since the last period, in order of arrival; the newest that counts wins
 };
 
 struct KeyOutput {
@@ -51,9 +51,10 @@ struct KeyOutput {
 
 struct PeriodOutput {
   std::int64_t host_time = 0;      // as it came in [ns]
-  Fault message = Fault::none;     // what was wrong with the message; gap alone: it counted
-  bool has_input = false;          // a message came and counted
-  Fault faults = Fault::none;      // of the message and of all keys
+  Fault message = Fault::none;     // what was wrong with the messages
+  bool has_input = false;          // one of them counted
+  const PositionMessage* used = nullptr;  // the newest of those; null: none
+  Fault faults = Fault::none;      // of the messages and of all keys
   int asleep = 0;                  // keys
   std::span<const KeyOutput> key;  // valid until the next period
   std::span<const HammerEvent> blow;
@@ -87,19 +88,19 @@ class Renderer {
   const RenderSettings& settings() const noexcept { return settings_; }
   const Keyboard& keyboard() const noexcept { return keyboard_; }
   const FaultCounters& counters() const noexcept { return counters_; }
+  std::int64_t accepted_messages() const noexcept { return accepted_messages_; }
   std::uint64_t lost_messages() const noexcept { return lost_messages_; }  // by their sequence
 
   /// Advances everything by one period. The output is valid until the next call.
   const PeriodOutput& period(const PeriodInput& in) noexcept {
     result_ = {};
     result_.host_time = in.host_time;
-    take_message(in);
+    take_messages(in);
     for (int k = 0; k < size(); ++k) follow(k, in);
     blow_count_ = 0;
     const std::span<const double> forces = keyboard_.tick(
         input_, [this](int k, const State& state, const StepReport&, double force) noexcept { see(k, state, force); });
     for (int k = 0; k < size(); ++k) render(k, forces[k]);
-    counters_.add(result_.message);
     result_.faults |= result_.message;
     result_.asleep = keyboard_.asleep_count();
     result_.key = output_;
@@ -138,12 +139,24 @@ class Renderer {
     return (1.5 * b / s.tick.period + (is_piston ? s.coupling_stiffness : 0.0)) * noise * noise;
   }
 
-  void take_message(const PeriodInput& in) noexcept {
-    if (in.message == nullptr) return;
-    result_.message = message_watch_.look(*in.message, in.host_time);
-    result_.has_input = result_.message == Fault::none || result_.message == Fault::gap;
-    message_ = in.message;
-    if (result_.has_input) lost_messages_ += message_watch_.lost();
+  /// The newest message that counts; those before it in the same period are as good as lost to the estimators.
+  void take_messages(const PeriodInput& in) noexcept {
+    message_ = nullptr;
+    is_first_ = false;
+    between_ = 0;
+    for (const PositionMessage& message : in.messages) {
+      const Fault fault = message_watch_.look(message, in.host_time);
+      counters_.add(fault);
+      result_.message |= fault;
+      if (fault != Fault::none && fault != Fault::gap) continue;
+      lost_messages_ += message_watch_.lost();
+      between_ += message_watch_.lost() + (message_ != nullptr ? 1 : 0);
+      is_first_ = is_first_ || message_watch_.is_first();
+      message_ = &message;
+      ++accepted_messages_;
+    }
+    result_.has_input = message_ != nullptr;
+    result_.used = message_;
   }
 
   /// Position of one key: judged, followed, or missed.
@@ -154,13 +167,13 @@ class Renderer {
     if (result_.has_input)
       verdict =
           key.watch.look(settings_.watch, message_->position[k], static_cast<double>(message_->device_time) * 1e-9,
-                         period_, message_watch_.is_first(), faults);
+                         period_, is_first_, faults);
     if (verdict == SampleVerdict::rejected) {
       key.track.miss(settings_.track, period_);
     } else {
       key.last_good = in.host_time;
       key.is_live = true;
-      const int lost = static_cast<int>(std::min<std::uint64_t>(message_watch_.lost(), 1000));
+      const int lost = static_cast<int>(std::min<std::uint64_t>(between_, 1000));
       key.track.take(settings_.track, period_, message_->position[k], lost, verdict == SampleVerdict::resumed);
     }
     const double age = static_cast<double>(in.host_time - key.last_good) * 1e-9;
@@ -241,7 +254,10 @@ class Renderer {
   std::vector<KeyOutput> output_;
   std::vector<HammerEvent> blow_;
   int blow_count_ = 0;
-  const PositionMessage* message_ = nullptr;
+  const PositionMessage* message_ = nullptr;  // of this period; null: none
+  bool is_first_ = false;                     // it began the stream anew
+  std::uint64_t between_ = 0;                 // messages between it and the one used before
+  std::int64_t accepted_messages_ = 0;
   FaultCounters counters_;
   std::uint64_t lost_messages_ = 0;
   PeriodOutput result_;
