@@ -22,7 +22,7 @@ RigSettings bare(double mass = 0.1) {
   RigSettings settings;
   settings.lever = {mass, 0, 0, 0, 0, 10};
   settings.sensor = {0, 0, 0, 1};
-  settings.actuator = {ActuatorKind::voice_coil, 0, 0, 100, 0};
+  settings.actuator = {VirtualActuatorKind::voice_coil, 0, 0, 100, 0};
   settings.finger = {1000, 0};
   settings.sub_step = kSubStep;
   return settings;
@@ -164,7 +164,7 @@ TEST(Rig, ReturnSpringLiftsTheLever) {
 }
 
 TEST(VoiceCoil, AnswersWithItsTimeConstantExactly) {
-  VirtualActuator coil({ActuatorKind::voice_coil, 0.0003, 0, 10, 0}, kSubStep);
+  VirtualActuator coil({VirtualActuatorKind::voice_coil, 0.0003, 0, 10, 0}, kSubStep);
   for (int i = 1; i <= 40; ++i) {
     const ActuatorLoad load = coil.advance(4);
     const auto force = [](double t) { return 4 * (1 - std::exp(-t / 0.0003)); };
@@ -178,14 +178,14 @@ TEST(VoiceCoil, AnswersWithItsTimeConstantExactly) {
 
 TEST(VoiceCoil, KeepsItsLimitInBothDirections) {
   for (const double command : {50., -50.}) {
-    VirtualActuator coil({ActuatorKind::voice_coil, 0.0003, 0, 10, 0}, kSubStep);
+    VirtualActuator coil({VirtualActuatorKind::voice_coil, 0.0003, 0, 10, 0}, kSubStep);
     for (int i = 0; i < 1000; ++i) EXPECT_LE(std::abs(coil.advance(command).push), 10);
     EXPECT_NEAR(coil.force(), command > 0 ? 10 : -10, 1e-12);
   }
 }
 
 TEST(VirtualActuator, DeadTimeIsExact) {
-  for (const ActuatorKind kind : {ActuatorKind::voice_coil, ActuatorKind::mr_brake}) {
+  for (const VirtualActuatorKind kind : {VirtualActuatorKind::voice_coil, VirtualActuatorKind::mr_brake}) {
     VirtualActuator actuator({kind, 0, 0.0005, 10, 0}, kSubStep);
     for (int i = 0; i < 20; ++i) {
       actuator.advance(3);
@@ -198,7 +198,7 @@ TEST(VirtualActuator, DeadTimeIsExact) {
 
 RigSettings braked() {
   RigSettings settings = bare();
-  settings.actuator = {ActuatorKind::mr_brake, 0.002, 0, 20, 0.1};
+  settings.actuator = {VirtualActuatorKind::mr_brake, 0.002, 0, 20, 0.1};
   return settings;
 }
 

@@ -9,13 +9,13 @@
 
 namespace erard {
 
-enum class ActuatorKind {
+enum class VirtualActuatorKind {
   voice_coil,  // pushes and pulls
   mr_brake,    // magnetorheological fluid: resists sliding, at rest and in motion, and never moves anything
 };
 
 struct VirtualActuatorSettings {
-  ActuatorKind kind = ActuatorKind::voice_coil;
+  VirtualActuatorKind kind = VirtualActuatorKind::voice_coil;
   double time_constant = 0.0003;  // of the first-order answer: inductance over resistance, or the fluid's [s]
   double dead_time = 0;           // before it [s], to the nearest sub-step
   double limit = 30;              // of the force: the current's or the fluid's saturation [N]
@@ -23,7 +23,7 @@ struct VirtualActuatorSettings {
 
   /// Coils of 1 mH and 3 ohm settle in 0.3 ms; fluids take 1 to 10 ms and drag when off.
   static VirtualActuatorSettings voice_coil() noexcept { return {}; }
-  static VirtualActuatorSettings mr_brake() noexcept { return {ActuatorKind::mr_brake, 0.003, 0.0005, 30, 0.1}; }
+  static VirtualActuatorSettings mr_brake() noexcept { return {VirtualActuatorKind::mr_brake, 0.003, 0.0005, 30, 0.1}; }
 };
 
 /// Command to load, sub-step by sub-step: dead time, limit, first-order lag solved exactly for a held command.
@@ -39,7 +39,7 @@ class VirtualActuator {
   /// @param command  force, positive where it lifts the lever [N]; a brake takes what is negative for 0
   /// @return mean load of the sub-step
   ActuatorLoad advance(double command) noexcept {
-    const bool is_brake = settings_.kind == ActuatorKind::mr_brake;
+    const bool is_brake = settings_.kind == VirtualActuatorKind::mr_brake;
     const double least = is_brake ? 0 : -settings_.limit;
     const double target = std::clamp(dead_.push(command), least, settings_.limit);
     const double mean = target + kept_in_mean_ * (force_ - target);
