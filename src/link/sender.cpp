@@ -15,10 +15,8 @@ namespace erard {
 void Sender::Destroy::operator()(_lcm_t* lcm) const noexcept { lcm_destroy(lcm); }
 
 Sender::Sender(const std::string& url) {
-  if (url.find("://") == std::string::npos)
-    throw InputError(fmt::format("{}: must be an LCM address, for instance udpm://239.255.76.67:7667?ttl=0", url));
   std::string whole = url;
-  if (url.starts_with("udpm://")) {
+  if (!url.starts_with("file://")) {
     const LcmAddress address = parse_lcm_address(url);
     if (!address.is_group())
       throw InputError(fmt::format("{}: is no multicast group, must be 224.0.0.0 to 239.255.255.255 to send to", url));

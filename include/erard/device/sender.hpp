@@ -17,7 +17,7 @@ class Sender {
  public:
   static constexpr std::size_t kLongest = 4096;  // message [byte]
 
-  /// @param url  an LCM address, or one of LCM's other providers, for instance file:///tmp/session.lcm?mode=w
+  /// @param url  an LCM address, or a log to write: file:///tmp/session.lcm?mode=w
   /// Throws InputError when it cannot be read, std::runtime_error with the remedy when LCM cannot send there.
   explicit Sender(const std::string& url);
 
