@@ -26,8 +26,8 @@ Grant request_cpu(int cpu);
 /// that it is there (256 KiB): no page faults from then on, but for what a thread's first heap calls map.
 Grant request_memory_lock();
 
-/// How much later than asked for the kernel may wake the calling thread, to save wake-ups [ns]. It is 0 under SCHED_FIFO
-/// anyway; this is for who is refused that.
+/// How much later than asked for the kernel may wake the calling thread, to save wake-ups [ns]. It is 0 under
+/// SCHED_FIFO anyway; this is for who is refused that.
 Grant request_timer_slack(std::int64_t slack_ns);
 
 /// Keeps all CPUs out of sleep states that take time to leave, for as long as it lives (/dev/cpu_dma_latency).
