@@ -53,7 +53,7 @@ bool yes_or_no(YamlSection& section, const std::string& key) { return section.ch
 TickSettings read_tick(YamlSection& device) {
   TickSettings tick;
   tick.drive = device.choice("drive", {"piston", "key"}) == "piston" ? DriveKind::piston : DriveKind::key;
-  tick.set_rate(number(device, "rate_Hz", from_to(400, 50000)));
+  tick.set_rate(number(device, "rate_Hz", from_to(kSlowestRate, kFastestRate)));
   return tick;
 }
 

@@ -9,8 +9,8 @@ namespace {
 constexpr Fault kOfActuator = Fault::current_limited | Fault::thermal_limited | Fault::cannot_push;
 
 /// What a look at the memory before it is worth saving: a statistic is not.
-constexpr Fault kWorthSaving =
-    Fault::no_input | Fault::step_not_finite | Fault::implausible_speed | Fault::not_finite_input | Fault::period_missed;
+constexpr Fault kWorthSaving = Fault::no_input | Fault::step_not_finite | Fault::implausible_speed |
+                               Fault::not_finite_input | Fault::period_missed;
 
 std::int8_t kind_of(DriveKind drive) { return drive == DriveKind::key ? positions_t::kKey : positions_t::kPiston; }
 
@@ -40,7 +40,7 @@ HostPeriod::HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& po
   forces_.key_count = commands_.key_count = renderer.size();
   forces_.publisher_id = commands_.publisher_id = blow_.publisher_id = publisher_;
   commands_.actuator = settings.rendering.actuator.kind == ActuatorKind::mr_brake ? actuator_commands_t::kMrBrake
-                                                                                 : actuator_commands_t::kVoiceCoil;
+                                                                                  : actuator_commands_t::kVoiceCoil;
   static_cast<void>(sender_.publish(settings_.link.forces_channel.c_str(), forces_));
 }
 
@@ -68,7 +68,7 @@ void HostPeriod::take_positions() noexcept {
       trouble_ |= Fault::wrong_type;
       continue;
     }
-    const auto keys = static_cast<std::size_t>(std::clamp(p.key_count, 0, positions_t::kMaxKeys));
+    const auto keys = static_cast<std::size_t>(std::clamp(p.key_count, 0, static_cast<int>(positions_t::kMaxKeys)));
     message_[static_cast<std::size_t>(arrived_count_++)] = {static_cast<std::uint64_t>(p.publisher_id), p.sequence,
                                                             p.device_time_ns, std::span(p.position_m, keys)};
   }
@@ -100,14 +100,15 @@ void HostPeriod::publish(const PeriodOutput& out) noexcept {
   for (std::size_t k = 0; k < out.key.size(); ++k) {
     const KeyOutput& key = out.key[k];
     forces_.force_N[k] = key.force;
-    forces_.status[k] = key.fade <= 0                                       ? forces_t::kFaulted
-                        : key.fade < 1                                      ? forces_t::kFading
+    forces_.status[k] = key.fade <= 0                                         ? forces_t::kFaulted
+                        : key.fade < 1                                        ? forces_t::kFading
                         : renderer_.keyboard().is_asleep(static_cast<int>(k)) ? forces_t::kAsleep
-                                                                            : forces_t::kAwake;
+                                                                              : forces_t::kAwake;
   }
   if (!sender_.publish(settings_.link.forces_channel.c_str(), forces_)) trouble_ |= Fault::publish_failed;
   const std::int64_t sent = MonotonicClock{}.now();
-  if (out.used != nullptr && shares_clock(position_time_ns_, sent)) latency_.add(1e-9 * static_cast<double>(sent - position_time_ns_));
+  if (out.used != nullptr && shares_clock(position_time_ns_, sent))
+    latency_.add(1e-9 * static_cast<double>(sent - position_time_ns_));
   if (settings_.rendering.actuator.kind != ActuatorKind::none) publish_commands(out);
   if (!out.blow.empty()) publish_blows(out);
 }
@@ -139,10 +140,12 @@ void HostPeriod::publish_blows(const PeriodOutput& out) noexcept {
 void HostPeriod::record(const PeriodOutput& out) noexcept {
   const auto keep = [this](int channel, std::int64_t time, const auto& message) noexcept {
     const int size = message.encode(encoded_.data(), 0, static_cast<int>(encoded_.size()));
-    if (size > 0) recorder_.push(channel, time, std::as_bytes(std::span(encoded_).first(static_cast<std::size_t>(size))));
+    if (size > 0)
+      recorder_.push(channel, time, std::as_bytes(std::span(encoded_).first(static_cast<std::size_t>(size))));
   };
   for (int i = 0; i < arrived_count_; ++i)
-    keep(kRecordedPositions, arrived_[static_cast<std::size_t>(i)].time_ns, arrived_[static_cast<std::size_t>(i)].message);
+    keep(kRecordedPositions, arrived_[static_cast<std::size_t>(i)].time_ns,
+         arrived_[static_cast<std::size_t>(i)].message);
   keep(kRecordedForces, out.host_time, forces_);
 }
 

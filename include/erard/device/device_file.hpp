@@ -9,6 +9,8 @@
 
 namespace erard {
 
+inline constexpr double kSlowestRate = 400, kFastestRate = 50000;  // [Hz] design range of the scheme
+
 /// How the host's thread runs.
 struct RealTimeSettings {
   int priority = 80;   // SCHED_FIFO, 1 .. 99; 0: ordinary scheduling
@@ -20,8 +22,8 @@ struct RealTimeSettings {
 struct LinkSettings {
   std::string positions_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string forces_url = "udpm://239.255.76.68:7668?ttl=0";
-  std::string positions_channel = "POSITIONS";
-  std::string forces_channel = "FORCES";
+  std::string positions_channel = "ERARD_POSITIONS";
+  std::string forces_channel = "ERARD_FORCES";
 };
 
 struct DeviceSettings {

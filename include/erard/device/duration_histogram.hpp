@@ -39,6 +39,10 @@ class DurationHistogram {
     }
     return 0;
   }
+  /// How many fall into bin i, and the shortest duration of it [s]; bin 0 has all that are shorter.
+  long count(std::size_t i) const noexcept { return count_[i]; }
+  static double lower_edge(std::size_t i) noexcept { return kShortest * std::exp(kLogWidth * static_cast<double>(i)); }
+
   double worst() const noexcept { return worst_; }  // [s]
   long total() const noexcept { return total_; }
 

@@ -16,20 +16,20 @@ namespace erard {
 
 /// What the real-time thread tells the slower ones, once a period.
 struct HostNews {
-  FaultCounters faults;       // messages, or keys times periods
-  FaultCounters host_faults;  // periods
+  FaultCounters faults;                           // messages, or keys times periods
+  FaultCounters host_faults;                      // periods
   std::array<std::int64_t, kFaultCount> begun{};  // how often each appeared after a period without it
   Fault now = Fault::none;
   Fault ever = Fault::none;
-  bool has_input = false;  // positions ever came
-  bool is_fading = false;  // at least one force is not all that it should be
-  int asleep = 0;          // keys
-  std::int64_t accepted = 0, lost = 0, overflow = 0;                                         // messages
+  bool has_input = false;                             // positions ever came
+  bool is_fading = false;                             // at least one force is not all that it should be
+  int asleep = 0;                                     // keys
+  std::int64_t accepted = 0, lost = 0, overflow = 0;  // messages
   std::int64_t passivity_periods = 0, force_limit_periods = 0, slew_limit_periods = 0, actuator_limit_periods = 0;
-  std::int64_t blows = 0;       // on strings
-  double largest_force = 0;     // of any key [N]
-  double largest_change = 0;    // of a force from one period to the next [N]
-  double last_blow_speed = 0;   // of a hammer [m/s]
+  std::int64_t blows = 0;      // on strings
+  double largest_force = 0;    // of any key [N]
+  double largest_change = 0;   // of a force from one period to the next [N]
+  double last_blow_speed = 0;  // of a hammer [m/s]
 };
 
 /// One key as it stands, for viewers.
@@ -54,8 +54,8 @@ class HostPeriod {
 
   bool operator()(const Period& period) noexcept;
 
-  HostNews news() const noexcept { return news_shared_.load(); }          // from slower threads
-  KeyView view() const noexcept { return view_shared_.load(); }           // likewise, another key every time
+  HostNews news() const noexcept { return news_shared_.load(); }              // from slower threads
+  KeyView view() const noexcept { return view_shared_.load(); }               // likewise, another key every time
   DurationHistogram latency() const noexcept { return latency_.snapshot(); }  // sample taken to force sent
 
   std::int64_t publisher_id() const noexcept { return publisher_; }
@@ -79,6 +79,7 @@ class HostPeriod {
   Recorder& recorder_;
   PeriodicLoop<>& loop_;
   PhaseLock lock_;
+  bool is_steered_;
   std::int64_t publisher_;
   std::int64_t validity_ns_;
 
@@ -86,12 +87,11 @@ class HostPeriod {
   std::array<Arrival<positions_t>, kRoom> arrived_;  // in this period
   std::array<PositionMessage, kRoom> message_;       // what they say
   int arrived_count_ = 0;
-  Fault trouble_ = Fault::none;          // of the host, in this period
-  std::int64_t position_sequence_ = 0;   // of the newest position that counted
-  std::int64_t position_time_ns_ = 0;    // its device time [ns]
-  std::int64_t missed_ = 0;              // periods, as of the last look
+  Fault trouble_ = Fault::none;                // of the host, in this period
+  std::int64_t position_sequence_ = 0;         // of the newest position that counted
+  std::int64_t position_time_ns_ = 0;          // its device time [ns]
+  std::int64_t missed_ = 0;                    // periods, as of the last look
   std::int64_t malformed_ = 0, overflow_ = 0;  // messages, likewise
-  bool is_steered_;
   forces_t forces_;
   actuator_commands_t commands_;
   hammer_event_t blow_;

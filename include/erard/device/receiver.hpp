@@ -83,7 +83,8 @@ class Receiver {
     } else if (payload.size() != size_) {
       ++wrong_size_;
     } else if (Arrival<Message>* const room = ring_.room()) {
-      room->message.decode(payload.data(), 0, static_cast<int>(payload.size()));  // cannot fail: type and size are right
+      room->message.decode(payload.data(), 0,
+                           static_cast<int>(payload.size()));  // cannot fail: type and size are right
       room->time_ns = MonotonicClock{}.now();
       ring_.commit();
       ++accepted_;

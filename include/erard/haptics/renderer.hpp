@@ -35,7 +35,7 @@ struct RenderSettings {
 
 /// What a period begins with.
 struct PeriodInput {
-  std::int64_t host_time = 0;                // of this period, never decreasing [ns]
+  std::int64_t host_time = 0;                 // of this period, never decreasing [ns]
   std::span<const PositionMessage> messages;  // since the last period, in order of arrival; the newest that counts wins
 };
 
@@ -50,13 +50,13 @@ struct KeyOutput {
 };
 
 struct PeriodOutput {
-  std::int64_t host_time = 0;      // as it came in [ns]
-  Fault message = Fault::none;     // what was wrong with the messages
-  bool has_input = false;          // one of them counted
+  std::int64_t host_time = 0;             // as it came in [ns]
+  Fault message = Fault::none;            // what was wrong with the messages
+  bool has_input = false;                 // one of them counted
   const PositionMessage* used = nullptr;  // the newest of those; null: none
-  Fault faults = Fault::none;      // of the messages and of all keys
-  int asleep = 0;                  // keys
-  std::span<const KeyOutput> key;  // valid until the next period
+  Fault faults = Fault::none;             // of the messages and of all keys
+  int asleep = 0;                         // keys
+  std::span<const KeyOutput> key;         // valid until the next period
   std::span<const HammerEvent> blow;
 };
 
@@ -165,9 +165,8 @@ class Renderer {
     Fault faults = Fault::none;
     SampleVerdict verdict = SampleVerdict::rejected;
     if (result_.has_input)
-      verdict =
-          key.watch.look(settings_.watch, message_->position[k], static_cast<double>(message_->device_time) * 1e-9,
-                         period_, is_first_, faults);
+      verdict = key.watch.look(settings_.watch, message_->position[k],
+                               static_cast<double>(message_->device_time) * 1e-9, period_, is_first_, faults);
     if (verdict == SampleVerdict::rejected) {
       key.track.miss(settings_.track, period_);
     } else {
