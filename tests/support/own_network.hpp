@@ -1,4 +1,4 @@
-// A network of the test's own: loopback and nothing else, so that no multicast leaves the machine and tests do not meet.
+// A network of the test's own, loopback and nothing else: no multicast leaves the machine, and tests do not meet.
 #pragma once
 
 #include <net/if.h>
