@@ -86,6 +86,21 @@ TEST(Multicast, MakesNoHeapCallForAMessageOnceItRuns) {
   EXPECT_TRUE(is_whole);
 }
 
+TEST(Multicast, KeepsNothingOfAHundredThousandChannels) {
+  REQUIRE_OWN_NETWORK();
+  Receiver<positions_t> receiver(kDeviceUrl, "P", kOrdinary);
+  const RawSender raw(receiver.listener().address());
+  std::string datagram = lcm_datagram("Pxxxxxxx", "payload");
+  raw.send(datagram);
+  const long before = heap_calls;
+  for (int i = 0; i < 100000; ++i) {
+    for (int rest = i, place = 15; place > 8; --place, rest /= 10) datagram[place] = static_cast<char>('0' + rest % 10);
+    raw.send(datagram);
+  }
+  EXPECT_EQ(heap_calls - before, 0);  // LCM's library makes two a name, and never frees them
+  EXPECT_EQ(receiver.listener().dropped_by_kernel(), 100001);
+}
+
 /// A process that subscribes with LCM's library, and says when it is ready and when it got a message.
 class LibrarySubscriber {
  public:
