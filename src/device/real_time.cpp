@@ -43,8 +43,8 @@ std::string cpus_in_force() {
   if (sched_getaffinity(0, sizeof set, &set) != 0) return "unknown";
   std::string list;
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
-    if (CPU_ISSET(cpu, &set)) list += (list.empty() ? "" : ",") + std::to_string(cpu);
-  return "CPU " + list;
+    if (CPU_ISSET(cpu, &set)) list += fmt::format("{}{}", list.empty() ? "" : ",", cpu);
+  return fmt::format("CPU {}", list);
 }
 
 /// VmLck of this process [kB], as the kernel counts it; -1 when it does not tell.
