@@ -93,19 +93,21 @@ void read_velocity(YamlSection section, RateEstimatorSettings& e) {
   section.finish();
 }
 
-void read_coupling(YamlSection section, RenderSettings& r) {
-  r.coupling_stiffness = number(section, "stiffness_N_per_m", kPositive);
-  r.coupling_damping = number(section, "damping_N_s_per_m", kNotNegative);
+Coupling read_coupling(YamlSection section) {
+  Coupling coupling;
+  coupling.stiffness = number(section, "stiffness_N_per_m", kPositive);
+  coupling.damping = number(section, "damping_N_s_per_m", kNotNegative);
   section.finish();
+  return coupling;
 }
 
 void read_passivity(YamlSection section, double period, PassivitySettings& p) {
   p.is_on = yes_or_no(section, "on");
   p.reserve = number(section, "reserve_J", kPositive);
-  p.safe_damping = number(section, "safe_damping_N_s_per_m", kNotNegative);
+  p.safe_coupling = read_coupling(section.section("safe_coupling"));
   p.device_damping = number(section, "device_damping_N_s_per_m", kNotNegative);
   p.loop_delay = number(section, "loop_delay_s", from_to(0, Passivity::kMaxDelay * period));
-  p.release_time = number(section, "release_s", kPositive);
+  p.hold_time = number(section, "hold_s", kNotNegative);
   section.finish();
 }
 
@@ -182,7 +184,7 @@ DeviceSettings load_device(const ConfigText& config) {
   read_input(device.section("input"), period, rendering);
   read_velocity(device.section("velocity"), rendering.track.estimator);
   if (rendering.tick.drive == DriveKind::piston) {
-    read_coupling(device.section("coupling"), rendering);
+    rendering.coupling = read_coupling(device.section("coupling"));
   } else if (device.optional("coupling")) {
     device.reject(device.line("coupling"), "coupling has no effect with drive = key, remove it or set drive: piston");
   }

@@ -66,13 +66,20 @@ inline constexpr const char* fault_name(int i) noexcept {
   return names[static_cast<std::size_t>(i)];
 }
 
-/// How often each was seen: messages, or keys times periods.
+/// How often each was seen.
 struct FaultCounters {
-  std::array<std::int64_t, kFaultCount> count{};
+  std::array<std::int64_t, kFaultCount> count{};  // messages, or keys times periods
+  std::array<std::int64_t, kFaultCount> began{};  // periods in which some key has it and none had in the period before
 
   void add(Fault faults) noexcept {
     std::uint32_t bits = static_cast<std::uint32_t>(faults);
-    for (int i = 0; bits != 0; ++i, bits >>= 1) count[static_cast<std::size_t>(i)] += bits & 1u;
+    for (std::size_t i = 0; bits != 0; ++i, bits >>= 1) count[i] += bits & 1u;
+  }
+  /// @param faults  of the message and of all keys
+  void end_period(Fault faults) noexcept {
+    std::uint32_t bits = static_cast<std::uint32_t>(faults) & ~static_cast<std::uint32_t>(before_);
+    for (std::size_t i = 0; bits != 0; ++i, bits >>= 1) began[i] += bits & 1u;
+    before_ = faults;
   }
   /// Of one bit.
   std::int64_t operator[](Fault one) const noexcept {
@@ -81,6 +88,9 @@ struct FaultCounters {
     while (bits > 1) bits >>= 1, ++i;
     return count[i];
   }
+
+ private:
+  Fault before_ = Fault::none;
 };
 
 }  // namespace erard

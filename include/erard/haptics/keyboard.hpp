@@ -94,6 +94,14 @@ class Keyboard {
   }
   void end_tick() noexcept { ++ticks_; }
 
+  /// From the next period on a key is an action of another of the models, in the state that it has: they may differ in
+  /// numbers, not in bodies and contacts.
+  void exchange_model(int key, int number) noexcept {
+    key_[key].mechanism = number;
+    key_[key].calm_ticks = 0;
+    watch_[key].is_asleep = false;
+  }
+
   double time() const noexcept { return static_cast<double>(ticks_) * settings_.period; }  // [s]
   std::span<const double> forces() const noexcept { return force_; }                       // [N]
   std::span<const StepStatus> statuses() const noexcept { return status_; }  // of the last period each was awake

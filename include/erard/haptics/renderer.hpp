@@ -1,6 +1,7 @@
 // From "a position message arrived" to "this force leaves": everything a device renders, without clock, thread or network.
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -24,8 +25,7 @@ struct RenderSettings {
   int keys = 1;       // 1 .. 88
   TickSettings tick;  // drive piston or key, rate
   SleepSettings sleep = SleepSettings::eager();
-  double coupling_stiffness = 6500;  // a of the Kelvin-Voigt element between device and simulated key [N/m]
-  double coupling_damping = 134;     // b [N s/m]
+  Coupling coupling;  // between the device and the simulated key, of the drive `piston`
   PositionWatchSettings watch;
   PistonTrackSettings track;
   PassivitySettings passivity;
@@ -46,6 +46,7 @@ struct KeyOutput {
   double simulated_force = 0;  // of the finger on the simulated key, before all that held it back [N]
   DriveSample piston;          // that drove the simulated key, at the end of the period [m], [m/s]
   double fade = 0;             // 0 .. 1
+  double surplus = 0;          // of the joint between device and action, Passivity [J]
   Fault faults = Fault::none;
 };
 
@@ -74,9 +75,10 @@ class Renderer {
       : settings_(settings),
         roles_(roles),
         period_(settings.tick.period),
-        allowance_(noise_energy(settings)),
+        noise_energy_(noise_energy(settings)),
         message_watch_(settings.watch, settings.keys),
-        keyboard_(coupled(model, settings), settings.keys, settings.tick, settings.sleep),
+        keyboard_(coupled(model, settings), std::vector<int>(static_cast<std::size_t>(settings.keys), kNormal),
+                  settings.tick, settings.sleep),
         key_(static_cast<std::size_t>(settings.keys), Key(settings)),
         input_(key_.size()),
         output_(key_.size()),
@@ -102,6 +104,7 @@ class Renderer {
         input_, [this](int k, const State& state, const StepReport&, double force) noexcept { see(k, state, force); });
     for (int k = 0; k < size(); ++k) render(k, forces[k]);
     result_.faults |= result_.message;
+    counters_.end_period(result_.faults);
     result_.asleep = keyboard_.asleep_count();
     result_.key = output_;
     result_.blow = std::span(blow_).first(static_cast<std::size_t>(blow_count_));
@@ -109,6 +112,8 @@ class Renderer {
   }
 
  private:
+  static constexpr int kNormal = 0, kSafe = 1;  // models of the keyboard
+
   struct Key {
     explicit Key(const RenderSettings& settings) noexcept : track(settings.track, settings.tick.period) {}
 
@@ -119,24 +124,28 @@ class Renderer {
     Actuator actuator;
     Passivity passivity;
     HammerWatch hammer;
-    double y = 0, rate = 0;  // of the simulated key, now [m], [m/s]
-    double force = 0;        // on it, at the last internal step [N]
-    double given = 0;        // to it this period [J]
-    double way_from = 0;     // piston of the period before [m]
-    PistonTrack track;       // large, and its first lines are what a resting key looks at
+    double y = 0;         // of the simulated key, now [m]
+    double force = 0;     // on it, at the last internal step [N]
+    double given = 0;     // to it this period [J]
+    double way_from = 0;  // piston of the period before [m]
+    PistonTrack track;    // large, and its first lines are what a resting key looks at
   };
 
-  static Model coupled(Model model, const RenderSettings& settings) noexcept {
-    model.finger.stiffness = settings.coupling_stiffness;
-    model.finger.damping = settings.coupling_damping;
-    return model;
+  /// The model with either coupling, by kNormal and kSafe.
+  static std::array<Model, 2> coupled(const Model& model, const RenderSettings& settings) noexcept {
+    std::array<Model, 2> models{model, model};
+    for (const int i : {kNormal, kSafe}) {
+      const Coupling& coupling = i == kNormal ? settings.coupling : settings.passivity.safe_coupling;
+      models[static_cast<std::size_t>(i)].finger.stiffness = coupling.stiffness;
+      models[static_cast<std::size_t>(i)].finger.damping = coupling.damping;
+    }
+    return models;
   }
 
   static double noise_energy(const RenderSettings& s) noexcept {
-    const bool is_piston = s.tick.drive == DriveKind::piston;
-    const double b = is_piston ? s.coupling_damping : s.passivity.safe_damping;
+    if (s.tick.drive != DriveKind::piston) return 0;
     const double noise = s.passivity.sensor_noise;
-    return (1.5 * b / s.tick.period + (is_piston ? s.coupling_stiffness : 0.0)) * noise * noise;
+    return (1.5 * s.coupling.damping / s.tick.period + s.coupling.stiffness) * noise * noise;
   }
 
   /// The newest message that counts; those before it in the same period are as good as lost to the estimators.
@@ -192,7 +201,6 @@ class Renderer {
     key.given += 0.5 * (key.force + force) * (y - key.y);
     key.force = force;
     key.y = y;
-    key.rate = key_velocity(mechanism.model, state);
     if (key.hammer.observe(mechanism, roles_, state))
       blow_[static_cast<std::size_t>(blow_count_++ % size())] = {k, state.time, key.hammer.speed()};
   }
@@ -207,7 +215,7 @@ class Renderer {
     out.piston = input_[k];
     out.simulated_force = simulated;
     const bool is_well = key.is_live && key.track.is_aligned() && is_finite;
-    const double wanted = is_finite ? passive_force(key, out, is_well) : std::numeric_limits<double>::quiet_NaN();
+    const double wanted = is_finite ? passive_force(k, out, is_well) : std::numeric_limits<double>::quiet_NaN();
     out.force = key.guard.pass(settings_.guard, period_, wanted, is_well, out.faults);
     out.fade = key.guard.fade();
     const ActuatorCommand command =
@@ -215,37 +223,44 @@ class Renderer {
     out.current = command.current;
     out.expected_force = command.force;
     key.passivity.remember(command.force);
+    out.surplus = key.passivity.surplus();
     key.given = 0;
     if (out.faults != Fault::none) counters_.add(out.faults);
     result_.faults |= out.faults;
   }
 
   /// What is to be rendered of the simulated force.
-  double passive_force(Key& key, const KeyOutput& out, bool is_well) noexcept {
-    const bool is_piston = settings_.tick.drive == DriveKind::piston;
-    const double a = settings_.coupling_stiffness, b = settings_.coupling_damping;
-    const double stretch = is_piston ? out.piston.value - key.y : 0.0;
-    const double stored = 0.5 * a * std::max(stretch, 0.0) * std::max(stretch, 0.0);
+  double passive_force(int k, const KeyOutput& out, bool is_well) noexcept {
+    Key& key = key_[k];
     const PassivitySettings& passivity = settings_.passivity;
-    // a brake cannot give energy; a force that is fading has little to do with the simulated one
+    // a brake cannot give energy
     if (!passivity.is_on || settings_.actuator.kind == ActuatorKind::mr_brake) return out.simulated_force;
-    if (!is_well || key.guard.fade() < 1) {
-      key.passivity.restart(passivity, stored);
-      return out.simulated_force;
+    const bool is_piston = settings_.tick.drive == DriveKind::piston, was_acting = key.passivity.is_acting();
+    const double stretch = is_piston ? std::max(out.piston.value - key.y, 0.0) : 0.0;
+    const auto stored = [&] {
+      return 0.5 * (key.passivity.is_acting() ? passivity.safe_coupling : settings_.coupling).stiffness * stretch *
+             stretch;
+    };
+    // a force that is fading has little to do with the simulated one
+    if (is_well && key.guard.fade() == 1) {
+      key.passivity.observe(passivity, period_, noise_energy_, {out.piston.value - key.way_from, key.given, stored()});
+    } else {
+      key.passivity.restart(passivity, stored());
     }
-    Fault& faults = output_[static_cast<std::size_t>(&out - output_.data())].faults;
-    key.passivity.observe(passivity, period_, allowance_, {out.piston.value - key.way_from, key.given, stored}, faults);
-    const double g = key.passivity.share();
-    if (g == 0) return out.simulated_force;
-    if (!is_piston) return out.simulated_force + g * passivity.safe_damping * out.piston.rate;
-    const double damping = b + g * (passivity.safe_damping - b);
-    return std::max(0.0, a * stretch + damping * (out.piston.rate - key.rate));
+    const bool is_acting = key.passivity.act(passivity, period_, out.simulated_force == 0);
+    if (is_acting != was_acting && is_piston) {
+      keyboard_.exchange_model(k, is_acting ? kSafe : kNormal);
+      key.passivity.restart(passivity, stored());
+    }
+    if (is_acting) output_[k].faults |= Fault::passivity_acted;
+    const double damping = is_acting && !is_piston ? passivity.safe_coupling.damping : 0.0;
+    return out.simulated_force + damping * out.piston.rate;
   }
 
   RenderSettings settings_;
   ActionRoles roles_;
-  double period_;     // [s]
-  double allowance_;  // n of Passivity [J]
+  double period_;        // [s]
+  double noise_energy_;  // n of Passivity [J]
   MessageWatch message_watch_;
   Keyboard keyboard_;
   std::vector<Key> key_;
