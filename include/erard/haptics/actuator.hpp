@@ -44,8 +44,8 @@ struct ActuatorCommand {
 
 /// A winding that warms:
 ///   F = K I,   |I| <= allowed(u),   tau u' = (I / I_c)^2 - u
-/// u is the excess temperature as a part of what the winding stands, I_c what it stands for ever. From u = kFoldFrom on the
-/// allowed current goes from I_max to I_c on a straight line, which it reaches at u = 1: u does not exceed 1.
+/// u is the excess temperature as a part of what the winding stands, I_c what it stands for ever. From u = kFoldFrom on
+/// the allowed current goes from I_max to I_c on a straight line, which it reaches at u = 1: u does not exceed 1.
 class VoiceCoil {
  public:
   ActuatorCommand command(const VoiceCoilSettings& settings, double period, double force, Fault& faults) noexcept {
@@ -72,9 +72,9 @@ class VoiceCoil {
 /// A brake can only take energy:
 ///   force on the finger = (drag + yield) sign(v),   tau yield' = yield(I) - yield,   yield(I) = Y (1 - exp(-I / I_s))
 /// v > 0 downwards. Where the wanted force has the sign of -v it would have to push: the current is 0, and what is left
-/// is the drag. Standing still it may hold: it takes any force of the finger up to drag + yield, so what is wanted is what
-/// is expected, up to there. It knows nothing of the finger's direction then, nor does the current: a finger that lifts
-/// frees the key when the current has gone, some response times later.
+/// is the drag. Standing still it may hold: it takes any force of the finger up to drag + yield, so what is wanted is
+/// what is expected, up to there. It holds in both directions then: a finger that lifts frees the key when the current
+/// has gone, some response times later.
 class MrBrake {
  public:
   ActuatorCommand command(const MrBrakeSettings& settings, double period, double force, double velocity,

@@ -20,7 +20,7 @@ struct PassivitySettings {
   double reserve = 2e-3;             // credit of the joint, at most [J]
   Coupling safe_coupling{2000, 25};  // that the device takes whoever plays; of the drive `key` the damping alone
   double device_damping = 1;         // of the lever and the finger themselves, at least [N s/m]
-  double loop_delay = 5e-4;          // from the instant of a sample to the force that it makes [s]
+  double loop_delay = 8e-4;          // from the instant of a sample to the force that it makes [s]
   double sensor_noise = 5e-6;        // rms of a position [m]
   double hold_time = 0.5;            // for which the safe coupling stays, and until the key is let go [s]
 };
@@ -32,24 +32,30 @@ struct JointEnergy {
   double stored = 0;  // in the spring of the coupling now, a max(0, Y - y)^2 / 2 [J]
 };
 
-/// Observer and controller of passivity in the time domain. B. Hannaford, J.-H. Ryu, IEEE Trans. Robotics and Automation
-/// 18(1), 2002; that the reference is the energy of the model, not zero: J.-H. Ryu, C. Preusche, B. Hannaford, G. Hirzinger,
-/// IEEE Trans. Control Systems Technology 13(5), 2005; that a held force does exactly force times way: S. Stramigioli,
-/// C. Secchi, A. van der Schaft, C. Fantuzzi, IEEE Trans. Robotics 21(4), 2005.
+/// Observer and controller of passivity in the time domain. B. Hannaford, J.-H. Ryu, IEEE Trans. Robotics and
+/// Automation 18(1), 2002. That the reference is the energy of the model, not zero: J.-H. Ryu, C. Preusche,
+/// B. Hannaford, G. Hirzinger, IEEE Trans. Control Systems Technology 13(5), 2005. That a held force does exactly force times way:
+/// S. Stramigioli, C. Secchi, A. van der Schaft, C. Fantuzzi, IEEE Trans. Robotics 21(4), 2005.
 ///
-/// The action gives back what hammer, key and felts have stored, and more it cannot. What can create energy is the joint
-/// between it and the device: samples, delay, held forces, and the element that they drive. Its ports are the device (held
-/// force f, way of the sensor) and the simulated key (force F, way y). What went in, did not come out and is not kept,
+/// The action gives back what hammer, key and felts have stored, and more it cannot. What can create energy is the
+/// joint between it and the device: samples, delay, held forces, and the element that they drive. Its ports are the
+/// device (held force f, way of the sensor) and the simulated key (force F, way y). What went in, did not come out and
+/// is not kept,
 ///   D += f dx + c dx^2 / T + n - integral F dy - d(stored)         D <= reserve
-/// never falls in continuous time, D' = b (Y' - y')^2. Here c dx^2 / T is for the damping of the device and the finger, and
-/// n = sigma^2 (3 b / 2 T + a) for the noise of the sensor, which looks like energy made by the joint (the rate, 3/2T of the
-/// newest sample at most, times the way back). D begins with the reserve; when it is used up the joint creates energy,
-/// and the controller acts:
+/// never falls in continuous time, where D' = b (Y' - y')^2. Here c dx^2 / T is for the damping of the device and the
+/// finger, and n = sigma^2 (3 b / 2 T + a) for the noise of the sensor, which looks like energy made by the joint: the
+/// newest sample's error makes a force of a + 3 b / 2 T times itself at most, and is undone by the next one.
+///
+/// D begins with the reserve. When that is used up, the controller acts:
 ///   drive `piston`  the coupling becomes the safe one, in the simulation and so for both sides. An element that loses
 ///                   stiffness loses energy, and one that changes its damping neither gains nor loses any.
 ///   drive `key`     f = F + b_safe Y'
-/// until hold_time is over and the key is let go, where a change costs nothing. Adding damping alone, as in the first paper, is no help to the drive `piston`: held for a period and a
-/// period late, damping b on a lever of mass m is itself unstable above b = m / T, 120 N s/m for 60 g at 2 kHz.
+/// until hold_time is over and the key is let go, where the change back costs nothing.
+///
+/// To add damping alone, as the first paper does, is no help to the drive `piston`: held for a period and a period
+/// late, damping b on a lever of mass m is itself unstable above b = m / T, 120 N s/m for 60 g at 2 kHz. Nor is it to
+/// take some of it from the rendered force alone: the simulation goes on with the other, and the difference is
+/// energy out of nothing. docs/device.md
 class Passivity {
  public:
   static constexpr int kMaxDelay = 6;  // periods

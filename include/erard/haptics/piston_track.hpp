@@ -12,11 +12,11 @@ namespace erard {
 
 struct PistonTrackSettings {
   RateEstimatorSettings estimator;
-  double extrapolation = 0.001;  // a missing sample is guessed from the rate for so long, then the piston stands [s]
-  double realign_speed = 0.1;  // at which the piston goes to where the key is after a silence or a jump, at most [m/s]
-  double realign_time = 0.02;  // and in which the rest of the way falls to 1/e [s]
-  double still_zone = 3e-5;    // a key that stays within it stands still: six times the rms noise of the sensor [m]
-  double still_time = 0.05;    // when it has done so for so long [s]
+  double extrapolation = 0.001;  // a missing sample is guessed for so long, then the piston stands [s]
+  double realign_speed = 0.02;   // of the piston, to where the key is after a silence or a jump, at most [m/s]
+  double realign_time = 0.02;    // and in which the rest of the way falls to 1/e [s]
+  double still_zone = 3e-5;      // a key that stays within it stands still: six times the rms noise of the sensor [m]
+  double still_time = 0.05;      // when it has done so for so long [s]
 };
 
 /// Piston of one key,   Y = x + offset,   Y' = x' + offset'
@@ -25,19 +25,22 @@ struct PistonTrackSettings {
 /// - After that, after a jump, and at the very first, x begins anew where the key is, and the offset takes the
 ///   difference: Y is continuous whatever the samples do. The offset then closes,
 ///       offset' = -offset / realign_time,   at most realign_speed
-///   slowly enough that the hammer does not reach the string by it.
-/// - Samples that were lost on the way but counted (`lost`) are put between, so that the estimator, which knows samples,
-///   not times, sees the true rate.
-/// - A key that stands still but for its sensor's noise has a piston that stands still to the bit. Then its action comes to rest and
-///   sleeps, Keyboard. When it moves again the offset takes the difference.
+///   once the force has faded: no force is felt that is not that of the key where it is.
+/// - Samples that were lost on the way but counted (`lost`) are put between, so that the estimator, which knows
+///   samples, not times, sees the true rate.
+/// - A key that stands still but for its sensor's noise has a piston that stands still to the bit. Then its action
+///   comes to rest and sleeps, Keyboard. When it moves again the offset takes the difference.
 class PistonTrack {
  public:
   PistonTrack(const PistonTrackSettings& settings, double period) noexcept : estimator_(settings.estimator, period) {}
 
   /// A sample that counts. @param position [m], @param lost samples before it, @param resumed it may lie anywhere
   void take(const PistonTrackSettings& settings, double period, double position, int lost, bool resumed) noexcept {
-    if (is_still_ && !resumed && missed_ == 0 && std::abs(position - middle_) <= settings.still_zone) return;
-    if (resumed || is_still_ || missed_ * period > settings.extrapolation) {
+    if (is_still_ && std::abs(position - middle_) <= settings.still_zone) {
+      missed_ = 0;
+      return;
+    }
+    if (resumed || is_still_ || is_guessed_out(settings, period)) {
       begin(position);
     } else {
       const int between = std::clamp(lost - missed_, 0, kMostBetween);
@@ -53,7 +56,7 @@ class PistonTrack {
   void miss(const PistonTrackSettings& settings, double period) noexcept {
     if (missed_ < kLong) ++missed_;
     if (is_still_) return;
-    if (missed_ * period <= settings.extrapolation) {
+    if (!is_guessed_out(settings, period)) {
       x_ += period * rate_;
       estimator_.update(x_);
     } else {
@@ -61,10 +64,11 @@ class PistonTrack {
     }
   }
 
-  /// The piston at the end of the period. @return [m], [m/s]
-  DriveSample advance(const PistonTrackSettings& settings, double period) noexcept {
+  /// The piston at the end of the period. @param is_force_off  none is felt: it may go to where the key is
+  /// @return [m], [m/s]
+  DriveSample advance(const PistonTrackSettings& settings, double period, bool is_force_off) noexcept {
     if (is_still_ && piston_.rate == 0) return piston_;
-    const double most = settings.realign_speed * period;
+    const double most = is_aligned() || is_force_off ? settings.realign_speed * period : 0;
     const double closed = std::clamp(offset_ * std::min(period / settings.realign_time, 1.0), -most, most);
     offset_ -= std::abs(offset_) < kNothing ? offset_ : closed;
     piston_ = is_still_ ? DriveSample{piston_.value, 0} : DriveSample{x_ + offset_, rate_ - closed / period};
@@ -81,6 +85,10 @@ class PistonTrack {
   static constexpr int kLong = 1 << 20;     // periods
   static constexpr double kAligned = 1e-4;  // [m] 0.65 N of the thesis's finger
   static constexpr double kNothing = 1e-9;  // [m] a thousandth of what sensors resolve
+
+  bool is_guessed_out(const PistonTrackSettings& settings, double period) const noexcept {
+    return missed_ * period > settings.extrapolation * (1 + 1e-9);  // whole periods, whatever the rounding
+  }
 
   void begin(double position) noexcept {
     estimator_.reset(position);

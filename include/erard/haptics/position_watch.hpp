@@ -27,12 +27,12 @@ struct PositionWatchSettings {
   int recovery_samples = 10;  // in a row that must fit together after a silence or a jump, > 0
 };
 
-/// Guards the channel. The first publisher that is heard keeps it until it has been silent for the timeout; then whoever
-/// speaks next has it, with a sequence and a clock of its own: a device program that was restarted is heard again, and so
-/// is one whose counters jumped.
+/// Guards the channel. The first publisher that is heard keeps it until it has been silent for the timeout; then
+/// whoever speaks next has it, with a sequence and a clock of its own: a device program that was restarted is heard again, and
+/// so is one whose counters jumped.
 ///
-/// A message is stale when its device time is not after the last one's, or when it has been under way for longer than the
-/// timeout. Clocks of device and host have no common zero, so "under way" counts from the quickest message:
+/// A message is stale when its device time is not after the last one's, or when it has been under way for longer than
+/// the timeout. Clocks of device and host have no common zero, so "under way" counts from the quickest message:
 ///   transit = host time - device time,  under way = transit - least transit so far
 /// where the least one grows by kDrift a second, which follows clocks that drift apart.
 class MessageWatch {
@@ -91,8 +91,8 @@ enum class SampleVerdict {
   rejected,  // not to be used
 };
 
-/// Guards the position of one key. A sample counts when it is finite, within the limits and no further from the last good
-/// one than max_speed allows,
+/// Guards the position of one key. A sample counts when it is finite, within the limits and no further from the last
+/// good one than max_speed allows,
 ///   |x - x_last| <= max_speed (t - t_last)          t: device time, the difference within T and the timeout
 /// A key that jumped, or was not heard of for the timeout, counts again when `recovery_samples` in a row fit together
 /// in this sense, wherever they are.

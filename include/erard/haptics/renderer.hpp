@@ -1,4 +1,4 @@
-// From "a position message arrived" to "this force leaves": everything a device renders, without clock, thread or network.
+// From "a position message arrived" to "this force leaves": what a device renders, without clock, thread or network.
 #pragma once
 
 #include <array>
@@ -63,8 +63,8 @@ struct PeriodOutput {
 
 /// n keys, one call a period:
 ///   message -> MessageWatch -> KeyWatch -> PistonTrack -> Keyboard (the actions) -> Passivity -> Guard -> Actuator
-/// The result is a function of the inputs since the start and nothing else: a recording of them gives every output again,
-/// bit for bit. Once built: no heap, no exceptions, no locks.
+/// The result is a function of the inputs since the start and nothing else: a recording of them gives every output
+/// again, bit for bit. Once built: no heap, no exceptions, no locks.
 class Renderer {
  public:
   static constexpr int kMaxKeys = 88;
@@ -190,7 +190,7 @@ class Renderer {
     if (!key.track.is_aligned()) faults |= Fault::realigned;
     output_[k].faults = faults;
     key.way_from = key.track.piston().value;
-    input_[k] = key.track.advance(settings_.track, period_);
+    input_[k] = key.track.advance(settings_.track, period_, key.guard.fade() == 0);
   }
 
   /// One internal step of a key that is awake.
