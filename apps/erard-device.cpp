@@ -70,7 +70,7 @@ class Display {
  public:
   void show(const Host& host, double elapsed) {
     const HostNews news = host.news();
-    const Fault now = host.faults_now() & kTold;
+    const Fault now = news.has_input ? host.faults_now() & kTold : Fault::none;
     if (news.has_input && !had_input_) line(elapsed, "positions arrive");
     had_input_ = news.has_input;
     if (const Fault begun = now & ~before_; begun != Fault::none) line(elapsed, names_of(begun));

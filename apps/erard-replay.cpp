@@ -3,7 +3,6 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -20,7 +19,8 @@
 #include "erard/device/error.hpp"
 #include "erard/device/link.hpp"
 #include "erard/device/position_source.hpp"
-#include "erard/version.hpp"
+#include "erard/device/verification.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -37,7 +37,7 @@ struct Options {
   std::optional<double> rate;
   std::optional<int> key, keys;
   std::optional<std::string> log_channel;
-  bool is_loop = false;
+  bool is_loop = false, is_verification = false;
 };
 
 void add_options(CLI::App& app, Options& o) {
@@ -56,6 +56,14 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--url", o.url, "LCM address to publish to")->capture_default_str();
   app.add_option("--channel", o.channel, "LCM channel to publish on")->capture_default_str();
   app.add_flag("--loop", o.is_loop, "over and over, until Ctrl-C");
+  CLI::Option* const verification = app.add_flag(
+      "--verify", o.is_verification,
+      "FILE is a recording of erard-device: publish nothing, compute its forces again from its positions and "
+      "compare them to the bit");
+  for (CLI::Option* const other : app.get_options())
+    if (other->get_name().rfind("--", 0) == 0 && other != verification && other->get_name() != "--help" &&
+        other->get_name() != "--version")
+      verification->excludes(other);
 }
 
 template <typename Number>
@@ -174,42 +182,50 @@ int replay(const Options& o) {
   } while (o.is_loop && !is_interrupted);
   report(o, tally);
   if (std::fflush(stdout) != 0) throw std::runtime_error("the summary could not be written to the standard output");
-  return is_interrupted ? 130 : tally.refused > 0 ? 1 : 0;
+  return is_interrupted ? kInterrupted : tally.refused > 0 ? kFailed : kDone;
 }
 
-/// A message on one line, whatever names it quotes.
-void complain(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  fmt::print(stderr, "{}\n", message);
+/// Recomputes a recorded session. @return kFailed where a force differs
+int verify(const Options& o) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { is_interrupted = true; });
+  const std::int64_t start = monotonic_time_ns();
+  std::int64_t shown = start;
+  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  const Verification v = verify_session(o.file, [&](const Verification& so_far) {
+    if (is_terminal && so_far.periods % 1000 == 0 && monotonic_time_ns() - shown > 500'000'000) {
+      shown = monotonic_time_ns();
+      fmt::print(stderr, "\r{} periods", so_far.periods);
+    }
+    return !is_interrupted;
+  });
+  if (shown != start) fmt::print(stderr, "\r{:<30}\r", "");
+  fmt::print("repeated     {} periods with {} messages{}\n", v.periods, v.messages,
+             v.has_gap        ? ", up to where the recorder lost events"
+             : v.is_cut_short ? ", up to where the file was cut short"
+                              : "");
+  if (v.first_difference >= 0)
+    fmt::print(
+        "differs      in {} periods, first in period {}: key {} recorded {} N, computed {} N; at most by {:.3g} N\n",
+        v.differing, v.first_difference, v.key, v.recorded, v.computed, v.largest);
+  if (is_interrupted) return kInterrupted;
+  fmt::print("verdict      {}\n", v.is_same()      ? "the same forces, bit for bit"
+                                  : v.periods == 0 ? "nothing to compare"
+                                                   : "other forces");
+  return v.is_same() ? kDone : kFailed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Publishes recorded key positions over LCM (erard.positions_t) at their own pace, as a device would.",
-               "erard-replay");
-  app.set_version_flag("--version", fmt::format("erard-replay {}", erard::kVersion));
+  CLI::App app(
+      "Publishes recorded key positions over LCM (erard.positions_t) at their own pace, as a device would; with "
+      "--verify "
+      "computes\na recorded session over again instead.",
+      "erard-replay");
   app.footer(
-      "Messages carry this program's own publisher_id, sequence and time. Exit codes: 0 done, 1 the run failed, 2 bad "
-      "input, 130 interrupted.");
+      "Messages carry this program's own publisher_id, sequence and time. Exit codes: 0 done, 1 the run failed or a "
+      "force\ndiffers, 2 bad input, 130 interrupted.");
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    complain(fmt::format("erard-replay: {}; see erard-replay --help", error.what()));
-    return 2;
-  }
-  try {
-    return replay(options);
-  } catch (const erard::InputError& error) {
-    complain(error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    complain(fmt::format("erard-replay: {}", error.what()));
-    return 1;
-  }
+  return run_program(app, argc, argv, [&] { return options.is_verification ? verify(options) : replay(options); });
 }

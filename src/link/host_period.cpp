@@ -22,6 +22,11 @@ bool shares_clock(std::int64_t device_time_ns, std::int64_t arrival_ns) {
 
 }  // namespace
 
+PositionMessage position_message(const positions_t& p) noexcept {
+  const auto keys = static_cast<std::size_t>(std::clamp(p.key_count, 0, static_cast<int>(positions_t::kMaxKeys)));
+  return {static_cast<std::uint64_t>(p.publisher_id), p.sequence, p.device_time_ns, std::span(p.position_m, keys)};
+}
+
 HostPeriod::HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& positions, Sender& sender,
                        Renderer& renderer, Recorder& recorder, PeriodicLoop<>& loop, bool is_steered)
     : settings_(settings),
@@ -68,9 +73,7 @@ void HostPeriod::take_positions() noexcept {
       trouble_ |= Fault::wrong_type;
       continue;
     }
-    const auto keys = static_cast<std::size_t>(std::clamp(p.key_count, 0, static_cast<int>(positions_t::kMaxKeys)));
-    message_[static_cast<std::size_t>(arrived_count_++)] = {static_cast<std::uint64_t>(p.publisher_id), p.sequence,
-                                                            p.device_time_ns, std::span(p.position_m, keys)};
+    message_[static_cast<std::size_t>(arrived_count_++)] = position_message(p);
   }
   const ReceiverCounts counts = positions_.counts();
   const std::int64_t malformed = counts.wrong_type + counts.wrong_size;

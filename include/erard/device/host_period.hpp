@@ -41,6 +41,9 @@ struct KeyView {
   double piston = 0, force = 0;                    // [m], [N]
 };
 
+/// A message as the renderer takes it; it looks into `positions`.
+PositionMessage position_message(const positions_t& positions) noexcept;
+
 /// Channels of a recording, in order of the recorder's settings.
 inline constexpr int kRecordedPositions = 0, kRecordedForces = 1;
 
