@@ -47,7 +47,7 @@ class Rendering {
 
   double key() const { return key_position(mechanism_.model, state_); }
   double hammer_speed() const {
-    for (int i = detector_.count(); i-- > 0;)
+    for (int i = 0; i < detector_.count(); ++i)
       if (detector_[i].kind == EventKind::hammer_meets_string) return detector_[i].hammer_speed;
     return 0;
   }

@@ -28,7 +28,7 @@ struct LoopTrace {
   std::vector<double> command;     // what the device is asked to lift the lever with [N]
   std::vector<double> finger;      // force of the finger on the lever [N]
   std::vector<double> lever, key;  // positions, of the device and of the simulated key [m]
-  double hammer_speed = 0;         // at the last string impact; 0 without [m/s]
+  double hammer_speed = 0;         // at the first string impact; 0 without [m/s]
 
   /// Finger force as a curve from `start` on.
   ForceCurve finger_curve(double start) const;

@@ -42,7 +42,7 @@ class CouplingLoop {
  public:
   /// @param period     T of the samples and commands [s]
   /// @param estimator  a linear one, of that period; its answers to impulses are followed until they are over
-  /// Throws std::invalid_argument when they are not over after 400 periods.
+  /// Throws std::invalid_argument when they are not over after 1000 periods.
   CouplingLoop(const LoopCase& loop, double period, const PistonEstimator& estimator);
 
   bool is_stable(const Coupling& coupling) const { return gain_margin(coupling, 1) > 0; }
