@@ -28,10 +28,10 @@ std::optional<T> optional_value(const YAML::Node& node) {
 
 }  // namespace
 
-SessionParts load_session(const Session& session) {
+DeviceSettings load_device(const Session& session) {
   const DeviceOverrides& set = session.overrides;
-  SessionParts parts{load_device(session.device), {}};
-  RenderSettings& rendering = parts.settings.rendering;
+  DeviceSettings settings = load_device(session.device);
+  RenderSettings& rendering = settings.rendering;
   if (set.keys) {
     if (*set.keys < 1 || *set.keys > Renderer::kMaxKeys)
       throw InputError(fmt::format("--keys = {}, must be 1 to {}", *set.keys, Renderer::kMaxKeys));
@@ -44,6 +44,11 @@ SessionParts load_session(const Session& session) {
     rendering.tick.set_rate(*set.rate_Hz);
   }
   if (set.actuator) rendering.actuator.kind = actuator_of(*set.actuator);
+  return settings;
+}
+
+SessionParts load_session(const Session& session) {
+  SessionParts parts{load_device(session), {}};
   ActionOptions options;
   options.damper = session.damper;
   parts.action = load_action(session.action, options);

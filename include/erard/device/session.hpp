@@ -31,6 +31,7 @@ struct SessionParts {
 
 /// Throws InputError with the place, file or option, and the rule.
 SessionParts load_session(const Session& session);
+DeviceSettings load_device(const Session& session);  // the settings alone
 
 /// As YAML: the version of erard, what was set, both files whole.
 std::string to_text(const Session& session);
