@@ -8,6 +8,7 @@
 #include <memory>
 #include <random>
 
+#include "erard/device/keystroke_input.hpp"
 #include "erard/haptics/events.hpp"
 #include "erard/mechanics/rest.hpp"
 #include "study/defaults.hpp"
@@ -44,14 +45,6 @@ std::vector<double> play(const ActionFile& action, const Input& input, double fr
     if (detector[i].kind == EventKind::hammer_meets_string) hammer_speed = detector[i].hammer_speed;
   return force;
 }
-
-struct Offline {
-  const Keystroke* keystroke;
-  DriveSample at(double time) const noexcept {
-    const Sample sample = keystroke->at(time);
-    return {sample.value, sample.rate};
-  }
-};
 
 /// A curve at the ends of the periods.
 ForceCurve curve_of(const std::vector<double>& force, double from) {
@@ -131,7 +124,7 @@ const std::vector<Candidate>& all_candidates() {
 OfflineRun play_offline(const ActionFile& action, const std::string& name, double from, double until) {
   OfflineRun run{name, default_keystroke(name), from, until, {}, 0};
   run.force = play(
-      action, Offline{&run.keystroke}, from, until, [](double) {}, run.hammer_speed);
+      action, KeystrokeInput{&run.keystroke}, from, until, [](double) {}, run.hammer_speed);
   return run;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "erard/device/keystroke_input.hpp"
 #include "erard/device/simulation.hpp"
 #include "study/defaults.hpp"
 
@@ -26,15 +27,6 @@ struct JudgedStroke {
 std::vector<JudgedStroke> judged_strokes();
 JudgedStroke judged_stroke(const std::string& name);
 
-/// The keystroke as the input of a period.
-struct StrokeInput {
-  const Keystroke* keystroke;
-  DriveSample at(double time) const noexcept {
-    const Sample sample = keystroke->at(time);
-    return {sample.value, sample.rate};
-  }
-};
-
 /// Counts steps, and shows them to the detector of events where there is one.
 struct Watch {
   EventDetector* detector = nullptr;
@@ -50,7 +42,7 @@ struct Watch {
 /// A stroke that is being played.
 struct Playing {
   const Mechanism* mechanism;
-  StrokeInput input;
+  KeystrokeInput input;
   State state;
   std::unique_ptr<Workspace> work = std::make_unique<Workspace>();
   Watch watch = {};

@@ -8,11 +8,7 @@
 namespace erard {
 namespace {
 
-using test::expect_one_sentence;
-using test::read_text;
-using test::run_program;
-using test::TemporaryFolder;
-using test::write_text;
+using namespace test;
 
 bool is_empty(const TemporaryFolder& folder) {
   for (const auto& entry : test::fs::recursive_directory_iterator(folder.path()))

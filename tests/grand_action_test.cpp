@@ -295,7 +295,7 @@ TEST(Contacts, ClosedContactsDoNotPenetrate) {
     const long periods = std::lround((keystroke.end() - keystroke.start()) / settings.period);
     state.time = keystroke.start();
     for (long i = 0; i < periods; ++i)
-      tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, measure);
+      tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, measure);
   }
   EXPECT_LT(closed, 1e-6);
   EXPECT_LT(closing, 5e-6);
@@ -314,11 +314,11 @@ TEST(Energy, OfTheReleasedActionNeverGrows) {
     Workspace work;
     const auto ignore = [](const State&, const StepReport&, double) noexcept {};
     while (state.time < release - 1e-9)
-      tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore);
+      tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, ignore);
     settings.drive = DriveKind::none;
     std::vector<double> energy{measure_energy(mechanism, state).total()};
     for (int i = 0; i < 1000; ++i)
-      tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work,
+      tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work,
            [&](const State& s, const StepReport&, double) noexcept {
              energy.push_back(measure_energy(mechanism, s).total());
            });
@@ -346,7 +346,7 @@ TEST(Determinism, ARunRestartedInTheMiddleGivesTheSameBits) {
     Workspace work;
     double force = 0;
     for (int i = 0; i < periods; ++i)
-      force = tick(mechanism, settings, test::KeystrokeInput{&keystroke}, state, work, ignore).force;
+      force = tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, ignore).force;
     return force;
   };
   State whole = rest_state(mechanism, settings.scheme.time_step);

@@ -53,7 +53,7 @@ TEST(RealTime, PoisonedScratchChangesNoBit) {
   const auto play = [&](bool is_poisoned) {
     const auto work = std::make_unique<Workspace>();
     State state = rest_state(mechanism, settings.scheme.time_step);
-    const test::KeystrokeInput input{&keystroke};
+    const KeystrokeInput input{&keystroke};
     for (int i = 0; i < 400; ++i) {
       // all bits set: NaN in every double, absurd sizes in every matrix
       if (is_poisoned) std::memset(static_cast<void*>(work.get()), 0xff, sizeof(Workspace));

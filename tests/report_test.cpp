@@ -12,11 +12,7 @@
 namespace erard {
 namespace {
 
-using test::expect_one_sentence;
-using test::read_text;
-using test::run_program;
-using test::TemporaryFolder;
-using test::write_text;
+using namespace test;
 
 constexpr const char* kPiano = "erard-sim --keystroke " ERARD_CONFIG_DIR "/keystrokes/piano.csv ";
 

@@ -1,3 +1,4 @@
+#include "erard/device/keystroke_input.hpp"
 #include "erard/device/simulation.hpp"
 
 #include <algorithm>
@@ -9,15 +10,6 @@
 
 namespace erard {
 namespace {
-
-/// The keystroke as a piston position, key position or force of any instant.
-struct KeystrokeInput {
-  const Keystroke* keystroke;
-  DriveSample at(double time) const noexcept {
-    const Sample sample = keystroke->at(time);
-    return {sample.value, sample.rate};
-  }
-};
 
 double start_force(const Mechanism& mechanism, const TickSettings& tick, const State& state, const DriveSample& input) {
   if (tick.drive == DriveKind::piston) return piston_force(mechanism.model, state, input);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "erard/device/action_file.hpp"
-#include "erard/device/keystroke.hpp"
+#include "erard/device/keystroke_input.hpp"
 #include "erard/device/results.hpp"
 #include "erard/erard.hpp"
 
@@ -29,15 +29,6 @@ inline TickSettings default_tick(DriveKind drive = DriveKind::piston) {
   settings.set_rate(2000);
   return settings;
 }
-
-/// A keystroke as input of tick().
-struct KeystrokeInput {
-  const Keystroke* keystroke;
-  DriveSample at(double time) const noexcept {
-    const Sample sample = keystroke->at(time);
-    return {sample.value, sample.rate};
-  }
-};
 
 /// Everything of one run, in memory.
 struct Stroke {
