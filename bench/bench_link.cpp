@@ -1,5 +1,5 @@
-// bench_link: how long a message takes from the publisher's call to the thread that takes it: the receiver of this project
-// beside the one of LCM's library. Both in one process, in a network of its own:
+// bench_link: how long a message takes from the publisher's call to the thread that takes it, by the receiver of this
+// project and by that of LCM's library. Both in one process, in a network of its own:
 //   unshare -n -r sh -c 'ip link set lo up; ip route add 224.0.0.0/4 dev lo; exec build/release/bin/bench_link'
 // One CSV row for each; times in us.
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 # LCM: ERARD_LCM_INCLUDE_DIR, ERARD_LCM_LIBRARY and ERARD_LCM_GEN.
-# From LCM's own CMake package where there is one (1.5, for instance out of its Python wheel, see docs/lcm.md); else what
-# Debian and Ubuntu have (1.3.1): no CMake package, and a pkg-config file that asks for a package it does not depend on.
+# From LCM's own CMake package where there is one (1.5, for instance out of its Python wheel, see docs/lcm.md); else
+# what Debian and Ubuntu have (1.3.1): no CMake package, and a pkg-config file that asks for a package it does not depend on.
 if(NOT ERARD_LCM_LIBRARY)
   find_package(lcm CONFIG QUIET)
 endif()

@@ -20,8 +20,9 @@ struct ListenerSettings {
 
 /// Listens to one channel of an LCM address on a socket of its own and hands on every payload.
 ///
-/// LCM's library is not asked: up to 1.3.1 a single pair of datagrams kills every process that subscribes with it, it keeps
-/// memory for every channel name it ever met, and a thread and a pipe more stand in the way of a message (docs/lcm.md).
+/// LCM's library is not asked: up to 1.3.1 a single pair of datagrams kills every process that subscribes with it, it
+/// keeps memory for every channel name it ever met, and a thread and a pipe more stand in the way of a message
+/// (docs/lcm.md).
 /// Here a datagram of anything but this channel is dropped by a filter in the kernel, before it wakes anybody.
 class DatagramListener {
  public:
@@ -31,7 +32,8 @@ class DatagramListener {
   static constexpr std::size_t kLongest = 4096;  // [byte], several times our largest message
 
   /// The thread inherits the CPUs of the caller.
-  /// Throws InputError for an address or a channel that cannot be, std::runtime_error when the machine refuses the socket.
+  /// Throws InputError for an address or a channel that cannot be, std::runtime_error when the machine refuses the
+  /// socket.
   DatagramListener(const LcmAddress& address, const std::string& channel, Handler handler, ListenerSettings settings);
   ~DatagramListener();  // waits for the thread, at most 0.1 s
   DatagramListener(const DatagramListener&) = delete;

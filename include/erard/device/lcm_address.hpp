@@ -8,8 +8,8 @@
 namespace erard {
 
 /// An LCM address udpm://IP:PORT?ttl=N&recv_buf_size=BYTES. What is left out is LCM's default.
-/// IP is a multicast group. To listen it may also be an address of this machine, for one listener: udpm://127.0.0.1:7667
-/// needs no route; LCM's library cannot send there.
+/// IP is a multicast group. To listen it may also be an address of this machine, for one listener:
+/// udpm://127.0.0.1:7667 needs no route; LCM's library cannot send there.
 struct LcmAddress {
   std::uint32_t ip = 0xEFFF4C43;  // 239.255.76.67, most significant byte first
   std::uint16_t port = 7667;

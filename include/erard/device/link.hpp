@@ -1,4 +1,4 @@
-// The link between device, host and viewers: LCM messages, where they go and under what names. docs/lcm.md has the rest.
+// The link between device, host and viewers: LCM messages, where they go, under what names. docs/lcm.md has the rest.
 #pragma once
 
 #include "erard/actuator_commands_t.hpp"

@@ -59,8 +59,8 @@ class KeystrokeSource : public PositionSource {
 /// The positions_t of one channel of an LCM log, at the pace of the device's own clock.
 ///
 /// The log's own time is the wall clock of the logger; it is taken only where the device's clock says nothing: another
-/// publisher, time that falls or leaps by more than 10 s. There time that falls counts as none, and a silence of more than
-/// 10 s as 10 s.
+/// publisher, time that falls or leaps by more than 10 s. There time that falls counts as none, and a silence of more
+/// than 10 s as 10 s.
 class LogSource : public PositionSource {
  public:
   /// Reads the whole file once. Throws InputError when it is damaged, or has no positions_t on that channel.

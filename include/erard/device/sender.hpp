@@ -11,8 +11,8 @@ struct _lcm_t;  // of LCM
 
 namespace erard {
 
-/// Publishes messages of the types in messages/*.lcm. Only one thread may publish on one Sender: then nobody holds a lock
-/// that publish() needs.
+/// Publishes messages of the types in messages/*.lcm. Only one thread may publish on one Sender: then nobody holds a
+/// lock that publish() needs.
 class Sender {
  public:
   static constexpr std::size_t kLongest = 4096;  // message [byte]
