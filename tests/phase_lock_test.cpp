@@ -62,7 +62,7 @@ TEST(PhaseLock, FollowsAClockThatDrifts) {
 }
 
 TEST(PhaseLock, AveragesArrivalsThatJitter) {
-  // spread evenly over 40 us: it settles at their mean, 20 us late, within the 1 us of
+  // spread evenly over 40 us: it settles at their mean, 20 us late, within 40 us / sqrt(12) * sqrt(gain / 2) = 1 us of
   // averaged white noise (this sequence has less), three times over
   EXPECT_NEAR(static_cast<double>(settled_error(0, 40 * us, 150 * us, 20000)), 20e3, 3e3);
 }
