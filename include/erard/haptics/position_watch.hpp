@@ -94,6 +94,7 @@ enum class SampleVerdict {
 /// Guards the position of one key. A sample counts when it is finite, within the limits and no further from the last
 /// good one than max_speed allows,
 ///   |x - x_last| <= max_speed (t - t_last)          t: device time, the difference within T and the timeout
+/// where an implausible sample counts as time, t_last = t, but not as place.
 /// A key that jumped, or was not heard of for the timeout, counts again when `recovery_samples` in a row fit together
 /// in this sense, wherever they are.
 class KeyWatch {
@@ -118,7 +119,10 @@ class KeyWatch {
       accept(position, time);
       return SampleVerdict::good;
     }
-    if (is_tracked_) faults |= Fault::implausible_speed;
+    if (is_tracked_) {
+      faults |= Fault::implausible_speed;
+      last_time_ = time;  // or a jump would be within what max_speed allows before long
+    }
     const bool goes_on = run_ > 0 && fits(settings, position - candidate_, time - candidate_time_, period);
     run_ = goes_on ? run_ + 1 : 1;
     candidate_ = position;
