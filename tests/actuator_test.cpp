@@ -156,7 +156,7 @@ TEST(MrBrake, AnswersWithItsResponseTime) {
 TEST(Actuator, WithoutAModelTheForceIsWhatWasWanted) {
   Actuator actuator;
   Fault faults = Fault::none;
-  const ActuatorCommand command = actuator.command({}, kT, 12.5, -0.1, faults);
+  const ActuatorCommand command = actuator.command({ActuatorKind::none, {}, {}}, kT, 12.5, -0.1, faults);
   EXPECT_EQ(command.force, 12.5);
   EXPECT_EQ(command.current, 0);
   EXPECT_EQ(faults, Fault::none);

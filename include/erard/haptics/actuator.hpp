@@ -32,7 +32,7 @@ struct MrBrakeSettings {
 };
 
 struct ActuatorSettings {
-  ActuatorKind kind = ActuatorKind::none;
+  ActuatorKind kind = ActuatorKind::voice_coil;
   VoiceCoilSettings voice_coil;
   MrBrakeSettings mr_brake;
 };
