@@ -198,6 +198,30 @@ TEST(PassivityOfTheDevice, CalmsALeverThatTheCouplingOfTheThesisShakes) {
   EXPECT_GT(calm.position, 0.010);  // on the bottom still
 }
 
+TEST(PassivityOfTheDevice, ASafeCouplingThatIsTheUsualOneChangesNoBit) {
+  const ActionFile action = test::grand_action();
+  const auto play = [&](bool is_on) {
+    RenderSettings settings = exact();
+    settings.sleep.is_on = false;
+    settings.passivity.is_on = is_on;
+    settings.passivity.reserve = 1e-9;
+    settings.passivity.safe_coupling = settings.coupling;
+    Device device(action, settings);
+    const Keystroke forte = test::keystroke("forte");
+    std::vector<double> forces;
+    bool has_acted = false;
+    device.rest(0.1);
+    for (double t = 0; t < forte.end(); t += kT) {
+      const KeyOutput& key = device.play(forte.at(t).value);
+      forces.push_back(key.force);
+      has_acted |= has(key.faults, Fault::passivity_acted);
+    }
+    EXPECT_EQ(has_acted, is_on);
+    return forces;
+  };
+  EXPECT_EQ(play(true), play(false));
+}
+
 TEST(PassivityOfTheDevice, AddsDampingWhereTheKeyIsDriven) {
   RenderSettings settings = exact();
   settings.tick.drive = DriveKind::key;
