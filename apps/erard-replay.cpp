@@ -161,7 +161,7 @@ void report(const Options& o, const Tally& tally) {
 int replay(const Options& o) {
   in_range("--speed", o.speed, kSlowest, kFastest);
   check_lcm_channel(o.channel);
-  const std::unique_ptr<PositionSource> source = is_lcm_log(o.file) ? open_log(o) : open_keystroke(o);
+  const std::unique_ptr<PositionSource> source = is_event_log(o.file) ? open_log(o) : open_keystroke(o);
   if (o.is_loop && source->duration_ns() == 0)
     throw InputError(fmt::format("{}: has one instant alone, must have two for --loop", o.file));
   Sender sender(o.url);

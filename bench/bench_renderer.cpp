@@ -45,7 +45,7 @@ class Device {
   std::vector<double>& positions() { return positions_; }
   const PeriodOutput& send() {
     const PositionMessage message{1, ++sequence_, time_ += period_, positions_};
-    return renderer_.period({time_ + 150'000, &message});
+    return renderer_.period({time_ + 150'000, std::span(&message, 1)});
   }
   const PeriodOutput& play(double position) {
     positions_.assign(positions_.size(), position);
@@ -54,7 +54,7 @@ class Device {
   const PeriodOutput& lose() {
     ++sequence_;
     time_ += period_;
-    return renderer_.period({time_ + 150'000, nullptr});
+    return renderer_.period({time_ + 150'000, {}});
   }
 
  private:

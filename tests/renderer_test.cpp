@@ -1,6 +1,7 @@
 // The whole pipeline between a message and a force: in faults, in recovery, in play.
 #include "erard/haptics/renderer.hpp"
 
+#include <array>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -176,6 +177,28 @@ TEST(Renderer, ABadKeyIsWithoutInputAndItsNeighboursDoNotNotice) {
   const std::vector<double> clean = play(0.001), with_nan = play(kNan), with_huge = play(1e308);
   EXPECT_EQ(clean, with_nan);
   EXPECT_EQ(clean, with_huge);
+}
+
+TEST(Renderer, OfSeveralMessagesInAPeriodTheNewestCounts) {
+  const auto play = [](bool is_bundled) {
+    Device device(action(), test::exact_rendering());
+    device.rest(0.1);
+    const std::array<double, 3> position{0, 1e-5, 2e-5};
+    std::vector<PositionMessage> messages;
+    for (std::size_t i = 0; i < position.size(); ++i)
+      messages.push_back({1, device.sequence + static_cast<std::int64_t>(i), device.time() + static_cast<int>(i),
+                          std::span(&position[i], 1)});
+    if (is_bundled)
+      std::swap(messages[1], messages[2]);  // the last to arrive was overtaken: it does not count
+    else
+      messages.assign(1, messages[2]);
+    const PeriodOutput& out = device.renderer.period({device.time() + 150'000, messages});
+    EXPECT_EQ(out.used, is_bundled ? &messages[1] : &messages[0]);
+    EXPECT_EQ(has(out.message, Fault::reordered), is_bundled);
+    EXPECT_EQ(has(out.message, Fault::gap), true);  // one was overtaken, or two never came
+    return out.key[0].piston.value;
+  };
+  EXPECT_EQ(play(true), play(false));
 }
 
 TEST(Renderer, ASecondPublisherChangesNoBitWhileTheFirstIsAlive) {

@@ -34,7 +34,28 @@ std::uint64_t get(const char* bytes, int count) {
   return number;
 }
 
+std::ifstream open_to_read(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (is_folder || !stream)
+    throw InputError(fmt::format("{}: cannot be read ({}), must be an LCM log", path.string(),
+                                 is_folder ? "it is a folder" : std::strerror(errno)));
+  return stream;
+}
+
+bool begins_like_a_log(std::ifstream& stream) {
+  std::array<char, 4> first{};
+  return stream.read(first.data(), first.size()) && get(first.data(), 4) == kSyncWord;
+}
+
 }  // namespace
+
+bool is_event_log(const std::filesystem::path& path) {
+  std::ifstream stream = open_to_read(path);
+  return begins_like_a_log(stream);
+}
 
 EventLogWriter::EventLogWriter(std::filesystem::path path) : path_(std::move(path)) {
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -96,19 +117,12 @@ void EventLogWriter::close() {
   file_ = -1;
 }
 
-EventLogReader::EventLogReader(std::filesystem::path path) : path_(std::move(path)) {
-  std::error_code error;
-  const bool is_folder = std::filesystem::is_directory(path_, error);
-  stream_.open(path_, std::ios::binary | std::ios::ate);
-  if (is_folder || !stream_)
-    throw InputError(fmt::format("{}: cannot be read ({}), must be an LCM log", path_.string(),
-                                 is_folder ? "it is a folder" : std::strerror(errno)));
+EventLogReader::EventLogReader(std::filesystem::path path) : path_(std::move(path)), stream_(open_to_read(path_)) {
+  stream_.seekg(0, std::ios::end);
   size_ = stream_.tellg();
   if (size_ == 0) throw InputError(fmt::format("{}: is empty, must be an LCM log", path_.string()));
   stream_.seekg(0);
-  std::array<char, 4> first{};
-  stream_.read(first.data(), static_cast<std::streamsize>(std::min<std::int64_t>(size_, 4)));
-  if (size_ < 4 || get(first.data(), 4) != kSyncWord)
+  if (!begins_like_a_log(stream_))
     throw InputError(fmt::format("{}: is no LCM log, which begins with the bytes ED A1 DA 01", path_.string()));
   stream_.seekg(0);
 }

@@ -21,16 +21,17 @@ std::uint64_t pause(std::int64_t earlier, std::int64_t later) {
 }
 
 /// The type alone counts: its fingerprint and size.
-bool is_positions(const LcmLogEvent& event) {
+bool is_positions(const LogEvent& event) {
   static const auto size = static_cast<std::size_t>(positions_t{}.getEncodedSize());
   positions_t ignored;
-  return event.payload.size() == size && ignored.decode(event.payload.data(), 0, static_cast<int>(size)) > 0;
+  return event.data.size() == size && ignored.decode(event.data.data(), 0, static_cast<int>(size)) > 0;
 }
 
-std::set<std::string> channels_with_positions(LcmLogReader& log) {
+std::set<std::string> channels_with_positions(const std::filesystem::path& file) {
   std::set<std::string> channels;
-  for (LcmLogEvent event; log.next(event);)
-    if (is_positions(event)) channels.insert(event.channel);
+  EventLogReader log(file);
+  while (const std::optional<LogEvent> event = log.next())
+    if (is_positions(*event)) channels.insert(event->channel);
   return channels;
 }
 
@@ -59,29 +60,33 @@ bool KeystrokeSource::next(positions_t& positions, std::int64_t& time_ns) {
   return true;
 }
 
-LogSource::LogSource(const std::filesystem::path& file, const std::string& channel) : log_(file), channel_(channel) {
+LogSource::LogSource(const std::filesystem::path& file, const std::string& channel)
+    : file_(file), log_(file), channel_(channel) {
   positions_t ignored;
   for (std::int64_t time = 0; next(ignored, time); ++count_) duration_ = time;
+  is_cut_short_ = log_.is_truncated();
   rewind();
   if (count_ > 0) return;
-  const std::set<std::string> others = channels_with_positions(log_);
+  const std::set<std::string> others = channels_with_positions(file);
   throw InputError(fmt::format("{}: holds no erard.positions_t on channel {}{}{}", file.string(), channel_,
                                others.empty() ? "" : ", but on ", fmt::join(others, ", ")));
 }
 
 void LogSource::rewind() {
-  log_.rewind();
+  log_ = EventLogReader(file_);
   time_ = 0;
   is_first_ = true;
 }
 
 bool LogSource::next(positions_t& positions, std::int64_t& time_ns) {
+  std::optional<LogEvent> event;
   do {
-    if (!log_.next(event_)) return false;
-  } while (event_.channel != channel_ || !is_positions(event_));
+    event = log_.next();
+    if (!event) return false;
+  } while (event->channel != channel_ || !is_positions(*event));
   const LogTimes before = before_;
-  positions.decode(event_.payload.data(), 0, static_cast<int>(event_.payload.size()));
-  before_ = {positions.publisher_id, positions.device_time_ns, event_.time_us};
+  positions.decode(event->data.data(), 0, static_cast<int>(event->data.size()));
+  before_ = {positions.publisher_id, positions.device_time_ns, event->time_us};
   if (!is_first_) {
     std::uint64_t silence = pause(before.device_ns, before_.device_ns);
     if (before.publisher != before_.publisher || silence > kLongestSilence) {

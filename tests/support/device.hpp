@@ -36,7 +36,7 @@ class Device {
   /// A period without a message.
   const PeriodOutput& silence() { return period(nullptr); }
   const PeriodOutput& period(const PositionMessage* message) {
-    const PeriodOutput& out = renderer.period({time_ + 150'000, message});
+    const PeriodOutput& out = renderer.period({time_ + 150'000, std::span(message, message != nullptr ? 1 : 0)});
     time_ += period_;
     return out;
   }

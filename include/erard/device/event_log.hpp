@@ -25,6 +25,9 @@ struct LogEvent {
   std::vector<std::byte> data;
 };
 
+/// Whether a file begins like a log. Throws InputError when it cannot be read.
+bool is_event_log(const std::filesystem::path& path);
+
 /// Appends events to a new file. Once the disk refuses, it stops for good: the file keeps every event that is whole.
 class EventLogWriter {
  public:

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "erard/device/keystroke.hpp"
-#include "erard/device/lcm_log.hpp"
+#include "erard/device/event_log.hpp"
 #include "erard/positions_t.hpp"
 
 namespace erard {
@@ -70,7 +70,7 @@ class LogSource : public PositionSource {
   void rewind() override;
   std::int64_t duration_ns() const override { return duration_; }
   std::int64_t message_count() const override { return count_; }
-  bool is_cut_short() const noexcept { return log_.is_cut_short(); }
+  bool is_cut_short() const noexcept { return is_cut_short_; }
 
  private:
   /// When a message was made.
@@ -80,9 +80,10 @@ class LogSource : public PositionSource {
     std::int64_t logged_us = 0;  // wall clock of the logger [us]
   };
 
-  LcmLogReader log_;
+  std::filesystem::path file_;
+  EventLogReader log_;
   std::string channel_;
-  LcmLogEvent event_;
+  bool is_cut_short_ = false;
   LogTimes before_;  // of the last message
   bool is_first_ = true;
   std::int64_t time_ = 0;      // of the last message, since the first [ns]
