@@ -15,6 +15,7 @@
 
 #include "bench/contender.hpp"
 #include "bench/harness.hpp"
+#include "bench/markdown_block.hpp"
 #include "bench/results.hpp"
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
@@ -25,14 +26,14 @@ namespace {
 using namespace erard;
 
 constexpr double kSlowestRate = 400, kFastestRate = 50000;  // [Hz] of the output, design range of the scheme
-constexpr int kMostKeys = 256;
+constexpr int kMostKeys = 256, kMostThreads = 64;
 constexpr int kInterrupted = 130;
 
 std::atomic<bool> is_interrupted{false};
 
 struct Options {
   bench::Request request;
-  std::string setting = "both", damper = "on", csv, json;
+  std::string setting = "both", sleep = "on", damper = "on", csv, json, markdown;
   std::optional<double> margin;
   bool is_real_time = false;
 };
@@ -50,13 +51,22 @@ void add_options(CLI::App& app, Options& o) {
                  "numbers of keys, 1 to 256; more than 1: the keyboard scenes (default: 1,8,44,88)")
       ->delimiter(',')
       ->check(CLI::Range(1, kMostKeys));
-  app.add_option("--rate", o.request.rates_Hz,
-                 "rates of the output in Hz, 400 to 50000 (default: 1000,2000,5000,10000 for one key, 2000 for more)")
+  app.add_option(
+         "--rate", o.request.rates_Hz,
+         "rates of the output in Hz, 400 to 50000 (default: 1000,2000,5000,10000,20000,50000 for one key, 2000 for "
+         "more, and 88 of them at 10000 on two threads)")
       ->delimiter(',');
   app.add_option("--setting", o.setting,
                  "cheapest: one internal step a period; default: as erard-sim takes them, 2 at 2 kHz and up to 8 where "
                  "something strikes; both")
       ->check(CLI::IsMember({"cheapest", "default", "both"}))
+      ->capture_default_str();
+  app.add_option("--sleep", o.sleep, "on: keys of a keyboard that rest are left alone; off: all are computed")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  app.add_option("--threads", o.request.threads,
+                 "share the keys of a keyboard out to that many threads, each on a CPU of its own")
+      ->check(CLI::Range(1, kMostThreads))
       ->capture_default_str();
   app.add_option("--repeat", o.request.repeat, "measure that many times as long, 1 to 100: p99.99 takes 100000 periods")
       ->check(CLI::Range(1, 100))
@@ -73,6 +83,10 @@ void add_options(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--csv", o.csv, "write the results to this file, times in us (default: none)");
   app.add_option("--json", o.json, "the same as JSON (default: none)");
+  app.add_option(
+      "--markdown", o.markdown,
+      "write the results as tables into this file, between its lines of comment if it has them; for instance "
+      "docs/performance.md (default: none)");
 }
 
 void check(Options& o) {
@@ -83,8 +97,13 @@ void check(Options& o) {
       throw InputError(fmt::format("--rate = {}, must be {} to {} Hz", rate, kSlowestRate, kFastestRate));
   if (o.margin && !(*o.margin > 0 && std::isfinite(*o.margin)))
     throw InputError(fmt::format("--margin = {}, must be a positive share of the period", *o.margin));
-  if (!o.csv.empty() && o.csv == o.json)
-    throw InputError(fmt::format("--csv and --json are both {}, must be two files", o.csv));
+  o.request.may_sleep = o.sleep == "on";
+  const std::pair<const char*, const std::string*> files[] = {
+      {"--csv", &o.csv}, {"--json", &o.json}, {"--markdown", &o.markdown}};
+  for (const auto& [one, file] : files)
+    for (const auto& [other, same] : files)
+      if (file != same && !file->empty() && *file == *same)
+        throw InputError(fmt::format("{} and {} are both {}, must be two files", one, other, *file));
 }
 
 /// Progress on a terminal, once a run takes longer than two seconds.
@@ -111,9 +130,10 @@ class Progress {
 };
 
 /// Scheduling and CPU of this run, in words. Throws std::runtime_error when what was asked for is refused.
-std::string settle(bool is_real_time) {
-  const int cpu = bench::pin_to_one_cpu();
-  const std::string where = cpu < 0 ? "not pinned to a CPU (refused)" : fmt::format("pinned to CPU {}", cpu);
+/// @param cpus  the first is this thread's, the others are for more threads
+std::string settle(const std::vector<int>& cpus, bool is_real_time) {
+  const bool is_pinned = !cpus.empty() && bench::pin_to(cpus.front());
+  const std::string where = is_pinned ? fmt::format("pinned to CPU {}", cpus.front()) : "not pinned to a CPU (refused)";
   if (!is_real_time) return where + ", ordinary scheduling";
   std::string refused;
   for (const std::string& each : bench::request_real_time()) refused += (refused.empty() ? "" : "; ") + each;
@@ -128,9 +148,10 @@ bool keeps_margin(const std::vector<bench::Row>& rows, double margin) {
     if (row.engine != bench::Engine::erard || row.share() <= margin) continue;
     all = false;
     fmt::print(
-        "MISSED: {} with {} key{} at {:.0f} Hz, {}: {} of the ticks takes {:.1f} % of the period, allowed are {:g} %\n",
-        row.scene, row.keys, row.keys == 1 ? "" : "s", row.rate_Hz, row.setting,
-        std::isnan(row.tick.p999) ? "the longest" : "p99.9", 100 * row.share(), 100 * margin);
+        "MISSED: {} with {} key{} at {:.0f} Hz on {} thread{}, {}: {} of the ticks takes {:.1f} % of the period, "
+        "allowed are {:g} %\n",
+        row.scene, row.keys, row.keys == 1 ? "" : "s", row.rate_Hz, row.threads, row.threads == 1 ? "" : "s",
+        row.setting, std::isnan(row.tick.p999) ? "the longest" : "p99.9", 100 * row.share(), 100 * margin);
   }
   return all;
 }
@@ -139,7 +160,11 @@ int run(Options& o) {
   check(o);
   const bool misses_peer = o.request.with_peers && bench::mujoco_version().empty();
   if (misses_peer) o.request.with_peers = false;
+  const std::vector<int> cpus = bench::usable_cpus();
+  o.request.cpus = std::max(1, static_cast<int>(cpus.size()));
   const std::vector<bench::Match> plan = bench::make_plan(o.request);
+  std::optional<bench::MarkdownBlock> markdown;
+  if (!o.markdown.empty()) markdown.emplace(o.markdown, "erard-bench");
   std::optional<OutputFile> csv, json;
   if (!o.csv.empty()) csv.emplace(o.csv);
   if (!o.json.empty()) json.emplace(o.json);
@@ -148,14 +173,16 @@ int run(Options& o) {
   bench::Results results;
   results.has_damper = o.damper == "on";
   const bench::Stage stage = bench::load_stage(results.has_damper);
-  const std::string scheduling = settle(o.is_real_time);
+  const std::string scheduling = settle(cpus, o.is_real_time);
   results.circumstances = bench::look_around();
   results.circumstances.scheduling = scheduling;
   if (misses_peer)
     fmt::print("peer: MuJoCo is not installed in this build; tools/install-peers fetches it, then run CMake again\n\n");
   {
     Progress progress;
-    const bench::Harness harness{stage, results.circumstances.clock_overhead, o.is_real_time, std::ref(progress)};
+    const std::vector<int> others(cpus.begin() + (cpus.empty() ? 0 : 1), cpus.end());
+    const bench::Harness harness{stage, results.circumstances.clock_overhead, o.is_real_time, others,
+                                 std::ref(progress)};
     results.rows = bench::measure(harness, plan);
   }
   results.is_complete = !is_interrupted;
@@ -168,7 +195,9 @@ int run(Options& o) {
     csv->commit();
   else if (json)
     json->commit();
+  if (markdown && results.is_complete) markdown->replace(bench::markdown(results));
   fmt::print("{}", bench::table(results));
+  if (markdown && !results.is_complete) fmt::print("{} is left as it was\n", o.markdown);
   const bool is_kept = !o.margin || keeps_margin(results.rows, *o.margin);
   if (std::fflush(stdout) != 0) throw std::runtime_error("the table could not be written to the standard output");
   if (!results.is_complete) return kInterrupted;
@@ -191,7 +220,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Scenes:" + scene_names() +
       "\n\nA tick is one period of all keys, a step one internal step of one key. Without options it takes about "
-      "two\nminutes. Exit codes: 0 done, 1 a scene missed the margin or the run failed, 2 bad input, 130 "
+      "three\nminutes. Exit codes: 0 done, 1 a scene missed the margin or the run failed, 2 bad input, 130 "
       "interrupted (what\nwas measured is kept).");
   Options options;
   add_options(app, options);

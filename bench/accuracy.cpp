@@ -23,6 +23,7 @@ ForceCurve force_of(Contender& contender, double rate_Hz, double end, const std:
   const long ticks = std::lround(end * rate_Hz);
   contender.start();
   for (long i = 1; i <= ticks && goes_on(); ++i) {
+    contender.prepare();
     contender.tick({});
     curve.time.push_back(static_cast<double>(i) / rate_Hz);
     curve.force.push_back(contender.force());
@@ -30,9 +31,11 @@ ForceCurve force_of(Contender& contender, double rate_Hz, double end, const std:
   return curve;
 }
 
-ForceCurve converged_force(const Maker& make, const Stage& stage, const Scene& scene,
+ForceCurve converged_force(const Maker& make, const Stage& stage, const Scene& scene, FeltModel felts,
                            const std::function<bool()>& goes_on) {
-  const auto contender = make(stage, {&scene, 1, kConvergedRate_Hz, kConvergedSubsteps});
+  Job job{&scene, 1, kConvergedRate_Hz, kConvergedSubsteps};
+  job.felts = felts;
+  const auto contender = make(stage, job);
   return force_of(*contender, kConvergedRate_Hz, scene.release, goes_on);
 }
 

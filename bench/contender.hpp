@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/clock.hpp"
 #include "bench/scene.hpp"
@@ -14,8 +15,9 @@ namespace erard::bench {
 struct Effort {
   long iterations = 0;     // Newton linearisations; of a peer the iterations of its solver
   long sweeps = 0;         // of the solver inside; 0 when a peer has none
-  long steps = 0;          // internal, taken
+  long steps = 0;          // internal, taken; 0: not counted, nor are the two above
   long not_converged = 0;  // periods of a key with a step that reached a limit
+  long asleep = 0;         // keys that were left alone
   bool is_finite = true;
 
   Effort& operator+=(const Effort& other) noexcept {
@@ -23,6 +25,7 @@ struct Effort {
     sweeps += other.sweeps;
     steps += other.steps;
     not_converged += other.not_converged;
+    asleep += other.asleep;
     is_finite = is_finite && other.is_finite;
     return *this;
   }
@@ -45,11 +48,18 @@ class Contender {
  public:
   virtual ~Contender() = default;
 
-  /// Strokes: rest, time 0. Keyboards: every key in the middle of its part.
+  /// Strokes: rest, time 0. Keyboards: every key has begun its part, one whole period of it has been played since rest.
+  /// From here on every call with the same number does the same, to the bit.
   virtual void start() = 0;
 
-  /// One period of every key.
-  virtual Effort tick(StepClock steps) = 0;
+  /// Gets ready what a host would hand over for the next period.
+  virtual void prepare() {}
+
+  /// One period of every key: what is timed.
+  virtual void tick(StepClock steps) = 0;
+
+  /// What that period took.
+  virtual Effort effort() const = 0;
 
   /// Of the finger on the first key at the end of the period [N].
   virtual double force() const = 0;
@@ -61,7 +71,10 @@ struct Job {
   int keys = 1;
   double rate_Hz = 2000;
   int substeps = 1;
-  bool is_split = false;  // into shorter ones where the motion is not as guessed; the peer has no such steps
+  bool is_split = false;           // into shorter ones where the motion is not as guessed; the peer has no such steps
+  bool may_sleep = false;          // keys of a keyboard that rest are left alone; the peer has nothing like that
+  std::vector<int> worker_cpus{};  // of a keyboard: that many threads more, each on a CPU of its own; the peer has none
+  FeltModel felts = FeltModel::massless;  // of the peer: always bodies
 };
 
 /// Both keep references to the stage.

@@ -11,7 +11,8 @@
 #include <string>
 
 #include "bench/build.hpp"
-#include "bench/keyboard.hpp"
+#include "bench/contender.hpp"
+#include "erard/haptics/tick.hpp"
 
 namespace {
 
@@ -21,16 +22,21 @@ constexpr double kRate_Hz = 2000;
 constexpr double kRest = 0.1;  // [s] of rest that are counted
 
 /// One period. Not inlined: its name is what valgrind looks for.
-[[gnu::noinline]] void counted_tick(bench::Keyboard& keyboard) { keyboard.tick({}); }
+[[gnu::noinline]] void counted_tick(bench::Contender& contender) { contender.tick({}); }
+
+bench::Job job_of(const bench::Scene& scene, bool is_cheapest) {
+  TickSettings settings;
+  settings.set_rate(kRate_Hz, is_cheapest ? 1 : 0);
+  return {&scene, 1, kRate_Hz, settings.substeps, settings.refinement > 1};
+}
 
 int count(const bench::Scene& scene, bool is_cheapest) {
   const bench::Stage stage = bench::load_stage(true);
-  TickSettings settings;
-  settings.set_rate(kRate_Hz, is_cheapest ? 1 : 0);
-  const auto keyboard = std::make_unique<bench::Keyboard>(stage.mechanism, settings, bench::cast(scene, stage, 1));
+  const bench::Job job = job_of(scene, is_cheapest);
+  const auto contender = bench::make_erard(stage, job);
   const long ticks = std::lround((scene.release > 0 ? scene.release : kRest) * kRate_Hz);
-  for (long i = 0; i < ticks; ++i) counted_tick(*keyboard);
-  fmt::print("{}\n", ticks * settings.substeps);
+  for (long i = 0; i < ticks; ++i) counted_tick(*contender);
+  fmt::print("{}\n", ticks * job.substeps);
   return 0;
 }
 

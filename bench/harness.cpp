@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 
 #include "bench/breather.hpp"
 #include "bench/fixed_work.hpp"
@@ -14,8 +15,9 @@
 namespace erard::bench {
 namespace {
 
-constexpr double kKeyboardSlice = 0.1;   // [s] simulated
+constexpr double kQuickKeyboard = 0.1;   // [s] simulated, instead of a whole part
 constexpr double kShortestTick = 5e-6;   // [s] with the fixed work: bounds how many fit the time of an entrant
+constexpr long kTailOfKeyboard = 10000;  // ticks of ours at least: so many it takes to state p99.9
 constexpr double kLargestSet = 600'000;  // ticks: 5 MB of times
 
 Maker maker_of(Engine engine) { return engine == Engine::erard ? make_erard : make_mujoco; }
@@ -24,6 +26,7 @@ Maker maker_of(Engine engine) { return engine == Engine::erard ? make_erard : ma
 struct Runner {
   Entrant entrant;
   std::unique_ptr<Contender> contender;
+  std::size_t least;  // ticks that it plays, however long they take
   SampleSet samples;
   Error error;
   double spent = 0;  // [s]
@@ -33,23 +36,25 @@ class MatchRun {
  public:
   MatchRun(const Harness& harness, const Match& match, double done_before, double done_after)
       : harness_(harness), match_(match), done_before_(done_before), done_after_(done_after) {
-    const double duration = match.scene->is_keyboard ? kKeyboardSlice : duration_of(*match.scene, harness.stage);
-    slice_ = std::lround(duration * match.rate_Hz);
-    const std::size_t passes = match.scene->is_keyboard || match.seconds == 0 ? 1 : kPasses;
-    least_ = passes * static_cast<std::size_t>(slice_);
+    const bool is_quick_keyboard = match.scene->is_keyboard && match.seconds == 0;
+    slice_ =
+        std::lround((is_quick_keyboard ? kQuickKeyboard : duration_of(*match.scene, harness.stage)) * match.rate_Hz);
     const auto ticks = static_cast<std::size_t>(std::min(match.seconds / kShortestTick, kLargestSet));
-    const std::size_t room = std::max(least_, ticks);
-    for (const Entrant& entrant : match.entrants)
+    for (const Entrant& entrant : match.entrants) {
+      const std::size_t least = least_ticks(entrant);
       runners_.push_back({entrant,
                           maker_of(entrant.engine)(harness.stage, job(entrant)),
-                          SampleSet(room, timed_steps(entrant)),
+                          least,
+                          SampleSet(std::max(least, ticks), timed_steps(entrant)),
                           {},
                           0});
+    }
   }
 
-  /// @param truth  converged force by engine
-  std::vector<Row> play(const std::map<Engine, ForceCurve>& truth) {
-    for (Runner& runner : runners_) warm_up(runner, truth.at(runner.entrant.engine));
+  /// @param truths  converged force of each entrant; empty curves on keyboards
+  std::vector<Row> play(const std::vector<ForceCurve>& truths) {
+    if (!match_.scene->is_keyboard)
+      for (std::size_t i = 0; i < runners_.size(); ++i) warm_up(runners_[i], truths[i]);
     for (bool is_busy = true; is_busy && goes_on();) {
       is_busy = false;
       for (Runner& runner : runners_) is_busy = play_slice(runner) || is_busy;
@@ -62,7 +67,23 @@ class MatchRun {
 
  private:
   Job job(const Entrant& entrant) const {
-    return {match_.scene, match_.keys, match_.rate_Hz, entrant.substeps, entrant.is_split};
+    const auto workers = harness_.worker_cpus.begin();
+    return {match_.scene,
+            match_.keys,
+            match_.rate_Hz,
+            entrant.substeps,
+            entrant.is_split,
+            entrant.may_sleep,
+            std::vector<int>(workers, workers + (match_.threads - 1)),
+            entrant.felts};
+  }
+
+  std::size_t least_ticks(const Entrant& entrant) const {
+    if (match_.seconds == 0) return static_cast<std::size_t>(slice_);
+    long passes = kPasses;
+    if (match_.scene->is_keyboard && entrant.engine == Engine::erard)
+      passes = std::max(passes, (kTailOfKeyboard + slice_ - 1) / slice_);
+    return static_cast<std::size_t>(passes * slice_);
   }
 
   /// Steps of a period that are timed one by one: those of one key, where there are always as many.
@@ -87,23 +108,24 @@ class MatchRun {
   /// @return whether it played; no when its time is over or its memory full
   bool play_slice(Runner& runner) {
     SampleSet& samples = runner.samples;
-    const bool is_first = samples.ticks().empty();
-    const bool has_enough = runner.spent >= match_.seconds && samples.ticks().size() >= least_;
+    const bool has_enough = runner.spent >= match_.seconds && samples.ticks().size() >= runner.least;
     if (has_enough || samples.room() < static_cast<std::size_t>(slice_)) return false;
     const auto clock = static_cast<std::int64_t>(std::lround(harness_.clock_overhead * 1e9));
     std::vector<std::int64_t> step_ends(static_cast<std::size_t>(timed_steps(runner.entrant)));
     const std::size_t before = samples.ticks().size();
     const double done_so_far = done();
     Effort effort;
+    runner.contender->start();
     const std::int64_t slice_begin = now();
-    if (!match_.scene->is_keyboard || is_first) runner.contender->start();
     long i = 0;
     for (; i < slice_ && harness_.goes_on(done_so_far); ++i) {
       breather_.breathe();
+      runner.contender->prepare();
       const StepClock steps = step_ends.empty() ? StepClock() : StepClock(step_ends.data());
       const std::int64_t begin = now();
-      effort += runner.contender->tick(steps);
+      runner.contender->tick(steps);
       const std::int64_t end = now();
+      effort += runner.contender->effort();
       const std::int64_t work_begin = now();
       fixed_work();
       const std::int64_t work_end = now();
@@ -130,19 +152,21 @@ class MatchRun {
                  : match_.scene->keystroke.empty() ? 0
                                                    : 1;
     row.rate_Hz = match_.rate_Hz;
+    row.threads = match_.threads;
+    row.may_sleep = runner.entrant.may_sleep;
+    row.felts = runner.entrant.felts;
     row.setting = runner.entrant.setting;
     row.substeps = runner.entrant.substeps;
-    if (!match_.scene->is_keyboard) {
-      std::vector<double> fastest = fastest_of_passes(samples.ticks(), static_cast<std::size_t>(slice_));
-      row.undisturbed = describe(fastest);
-    }
+    std::vector<double> fastest = fastest_of_passes(samples.ticks(), static_cast<std::size_t>(slice_));
+    row.undisturbed = describe(fastest);
     row.tick = describe(samples.ticks());
     row.step = describe(samples.steps());
     row.noise = describe(samples.noise());
     const double steps = static_cast<double>(effort.steps);
-    row.iterations = static_cast<double>(effort.iterations) / steps;
-    row.sweeps =
-        runner.entrant.engine == Engine::erard ? static_cast<double>(effort.sweeps) / steps : Distribution::kNone;
+    if (effort.steps > 0) row.iterations = static_cast<double>(effort.iterations) / steps;
+    if (effort.steps > 0 && runner.entrant.engine == Engine::erard)
+      row.sweeps = static_cast<double>(effort.sweeps) / steps;
+    row.asleep = static_cast<double>(effort.asleep) / static_cast<double>(row.tick.count);
     row.not_converged = effort.not_converged;
     row.error = runner.error;
     return row;
@@ -152,15 +176,14 @@ class MatchRun {
   const Match& match_;
   double done_before_, done_after_;
   Breather breather_{harness_.leaves_room};
-  long slice_ = 0;         // [ticks]
-  std::size_t least_ = 0;  // [ticks] that every entrant plays, however long they take
+  long slice_ = 0;  // a pass [ticks]
   std::vector<Runner> runners_;
 };
 
 }  // namespace
 
 std::vector<Row> measure(const Harness& harness, const std::vector<Match>& plan) {
-  std::map<std::pair<const Scene*, Engine>, ForceCurve> converged;
+  std::map<std::tuple<const Scene*, Engine, FeltModel>, ForceCurve> converged;
   double total = 0, done = 0;
   const auto weight = [](const Match& match) {
     return (match.seconds + 0.05) * static_cast<double>(match.entrants.size());
@@ -170,17 +193,17 @@ std::vector<Row> measure(const Harness& harness, const std::vector<Match>& plan)
   for (const Match& match : plan) {
     const double before = done / total;
     done += weight(match);
-    std::map<Engine, ForceCurve> truth;
+    std::vector<ForceCurve> truths;
     for (const Entrant& entrant : match.entrants) {
-      const auto [place, is_new] = converged.try_emplace({match.scene, entrant.engine});
+      const auto [place, is_new] = converged.try_emplace({match.scene, entrant.engine, entrant.felts});
       if (is_new && match.scene->release > 0)
-        place->second = converged_force(maker_of(entrant.engine), harness.stage, *match.scene,
+        place->second = converged_force(maker_of(entrant.engine), harness.stage, *match.scene, entrant.felts,
                                         [&] { return harness.goes_on(before); });
-      truth[entrant.engine] = place->second;
+      truths.push_back(place->second);
     }
     if (!harness.goes_on(before)) break;
     MatchRun run(harness, match, before, done / total);
-    const std::vector<Row> played = run.play(truth);
+    const std::vector<Row> played = run.play(truths);
     rows.insert(rows.end(), played.begin(), played.end());
   }
   compare_with_peers(rows);

@@ -13,8 +13,9 @@ using Monitor = std::function<bool(double done)>;
 
 struct Harness {
   const Stage& stage;
-  double clock_overhead;  // [s]
-  bool leaves_room;       // real-time scheduling: sleep between ticks now and then, see Breather
+  double clock_overhead;         // [s]
+  bool leaves_room;              // real-time scheduling: sleep between ticks now and then, see Breather
+  std::vector<int> worker_cpus;  // for threads beyond the first
   Monitor goes_on;
 };
 

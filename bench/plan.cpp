@@ -12,6 +12,8 @@ namespace erard::bench {
 namespace {
 
 constexpr double kMainRate_Hz = 2000;
+constexpr double kSharedRate_Hz = 10000;  // of the large keyboard, on two threads
+constexpr int kLargeKeyboard = 88;
 
 std::vector<std::string> all_names() {
   std::vector<std::string> names;
@@ -32,11 +34,42 @@ std::vector<Entrant> entrants_of(Engine engine, const Request& request, double r
   return entrants;
 }
 
-/// Long enough for p99.9 of a stroke at the main rate; the default run stays below two minutes.
+/// Long enough for p99.9 of a stroke at the main rate; the default run stays below three minutes.
 double seconds_of(const Scene& scene, double rate_Hz, const Request& request) {
   if (request.is_quick) return 0;
   const double once = scene.is_keyboard ? 1.5 : rate_Hz == kMainRate_Hz ? 3.5 : 0.7;
   return once * request.repeat;
+}
+
+/// One scene at one rate.
+Match match_of(const Scene& scene, int keys, double rate_Hz, const Request& request) {
+  Match match{&scene,
+              keys,
+              rate_Hz,
+              scene.is_keyboard ? request.threads : 1,
+              entrants_of(Engine::erard, request, rate_Hz),
+              seconds_of(scene, rate_Hz, request)};
+  for (Entrant& entrant : match.entrants) entrant.may_sleep = scene.is_keyboard && request.may_sleep;
+  if (request.with_peers && match.threads == 1)
+    for (const Entrant& peer : entrants_of(Engine::mujoco, request, rate_Hz)) match.entrants.push_back(peer);
+  return match;
+}
+
+/// Whether the default plan goes beyond what one request asks of every scene.
+bool has_extras(const Request& request) { return request.rates_Hz.empty() && !request.is_quick && request.cheapest; }
+
+/// The large keyboard at the rate that takes two CPUs.
+Match shared_match(const Scene& scene, const Request& request) {
+  Request shared = request;
+  shared.with_default = false;
+  shared.threads = std::max(2, request.threads);
+  return match_of(scene, kLargeKeyboard, kSharedRate_Hz, shared);
+}
+
+/// The action with the other kinds of felts, for the thesis's own figures (bench/thesis.hpp).
+void add_other_felts(Match& match) {
+  for (const FeltModel felts : {FeltModel::bodies, FeltModel::rigid})
+    match.entrants.push_back({Engine::erard, "cheapest", 1, false, false, felts});
 }
 
 bool is_quick_scene(const Scene& scene) {
@@ -69,22 +102,29 @@ std::vector<int> keys_of(const Scene& scene, const Request& request) {
 std::vector<double> rates_of(const Scene& scene, const Request& request) {
   if (!request.rates_Hz.empty()) return request.rates_Hz;
   if (scene.is_keyboard || request.is_quick) return {kMainRate_Hz};
-  return {1000, 2000, 5000, 10000};
+  return {1000, 2000, 5000, 10000, 20000, 50000};
 }
 
 }  // namespace
 
 const char* name_of(Engine engine) { return engine == Engine::erard ? "erard" : "mujoco"; }
 
+const char* name_of(FeltModel felts) {
+  return felts == FeltModel::rigid ? "rigid" : felts == FeltModel::bodies ? "bodies" : "massless";
+}
+
 std::vector<Match> make_plan(const Request& request) {
+  if (request.threads > request.cpus)
+    throw InputError(
+        fmt::format("--threads = {}, must be 1 to {}: each takes a CPU of its own", request.threads, request.cpus));
   std::vector<Match> plan;
   for (const Scene* scene : chosen_scenes(request))
     for (const int keys : keys_of(*scene, request))
       for (const double rate : rates_of(*scene, request)) {
-        Match match{scene, keys, rate, entrants_of(Engine::erard, request, rate), seconds_of(*scene, rate, request)};
-        if (request.with_peers)
-          for (const Entrant& peer : entrants_of(Engine::mujoco, request, rate)) match.entrants.push_back(peer);
-        plan.push_back(std::move(match));
+        plan.push_back(match_of(*scene, keys, rate, request));
+        if (has_extras(request) && scene->name == "piano" && rate == kMainRate_Hz) add_other_felts(plan.back());
+        if (has_extras(request) && scene->played == Played::all && keys == kLargeKeyboard && request.cpus >= 2)
+          plan.push_back(shared_match(*scene, request));
       }
   if (plan.empty())
     throw InputError(

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "bench/targets.hpp"
+#include "erard/mechanics/mechanism.hpp"
+#include "erard/solver/workspace.hpp"
 #include "src/device/json.hpp"
 
 namespace erard::bench {
@@ -29,6 +32,9 @@ std::vector<Cell> cells_of(const Row& r) {
                           {"scene", r.scene, 0, true},
                           {"keys", {}, static_cast<double>(r.keys)},
                           {"keys_played", {}, static_cast<double>(r.played)},
+                          {"keys_asleep", {}, r.asleep},
+                          {"threads", {}, static_cast<double>(r.threads)},
+                          {"felts", name_of(r.felts), 0, true},
                           {"rate_Hz", {}, r.rate_Hz},
                           {"setting", r.setting, 0, true},
                           {"steps_a_period", {}, static_cast<double>(r.substeps)},
@@ -39,6 +45,7 @@ std::vector<Cell> cells_of(const Row& r) {
   add_times(cells, "step", r.step);
   cells.push_back({"undisturbed_median_us", {}, 1e6 * r.undisturbed.median});
   cells.push_back({"undisturbed_p99_us", {}, 1e6 * r.undisturbed.p99});
+  cells.push_back({"undisturbed_p999_us", {}, 1e6 * r.undisturbed.p999});
   cells.push_back({"undisturbed_max_us", {}, 1e6 * r.undisturbed.max});
   cells.push_back({"iterations_a_step", {}, r.iterations});
   cells.push_back({"sweeps_a_step", {}, r.sweeps});
@@ -61,7 +68,17 @@ std::vector<Cell> cells_of(const Results& results) {
           {"scheduling", c.scheduling, 0, true},
           {"clock_overhead_us", {}, 1e6 * c.clock_overhead},
           {"peer", c.peer.empty() ? "not installed" : c.peer, 0, true},
-          {"damper", results.has_damper ? "on" : "off", 0, true}};
+          {"damper", results.has_damper ? "on" : "off", 0, true},
+          {"mechanism_bytes", {}, sizeof(Mechanism)},
+          {"state_bytes", {}, sizeof(State)},
+          {"workspace_bytes", {}, sizeof(Workspace)}};
+}
+
+std::vector<Cell> cells_of(const Target& target) {
+  return {
+      {"claim", target.claim, 0, true},     {"unit", target.unit, 0, true},          {"limit", {}, target.limit},
+      {"measured", {}, target.measured},    {"undisturbed", {}, target.undisturbed}, {"scene", target.where, 0, true},
+      {"verdict", verdict(target), 0, true}};
 }
 
 std::string plain(const Cell& cell) {
@@ -92,10 +109,12 @@ void write_csv(OutputFile& file, const Results& results) {
 }
 
 void write_json(OutputFile& file, const Results& results) {
-  std::vector<std::string> rows;
+  std::vector<std::string> rows, targets;
   for (const Row& row : results.rows) rows.push_back(object(cells_of(row)));
-  file.write(fmt::format("{{\"circumstances\":{},\"complete\":{},\n\"rows\":[\n{}\n]}}\n", object(cells_of(results)),
-                         json::flag(results.is_complete), fmt::join(rows, ",\n")));
+  for (const Target& target : targets_of(results.rows)) targets.push_back(object(cells_of(target)));
+  file.write(fmt::format("{{\"circumstances\":{},\"complete\":{},\n\"rows\":[\n{}\n],\n\"targets\":[\n{}\n]}}\n",
+                         object(cells_of(results)), json::flag(results.is_complete), fmt::join(rows, ",\n"),
+                         fmt::join(targets, ",\n")));
 }
 
 }  // namespace erard::bench

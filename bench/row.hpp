@@ -17,16 +17,21 @@ struct Row {
   int keys = 1;
   int played = 1;  // of the keys
   double rate_Hz = 2000;
+  int threads = 1;
+  bool may_sleep = false;  // keys that rest are left alone
+  FeltModel felts = FeltModel::massless;
   std::string setting;
   int substeps = 1;
   Distribution tick;         // one period of all keys
   Distribution step;         // one internal step; of one key only
-  Distribution undisturbed;  // the tick, each of a scene of one key at its fastest; empty: fewer than five passes
+  Distribution undisturbed;  // the tick, each of the scene at its fastest of all passes; empty: fewer than five
   Distribution noise;        // the fixed work, once after every period
-  double iterations = 0;     // a step: Newton linearisations; of a peer its solver's iterations
-  double sweeps = 0;         // a step; NaN: the solver has none
-  long not_converged = 0;    // periods of a key with a step that reached a limit
-  Error error;               // up to the release, against 100 internal steps a period of 2 kHz of the same engine
+  double iterations =
+      Distribution::kNone;              // a step of one key: Newton linearisations; of a peer its solver's iterations
+  double sweeps = Distribution::kNone;  // a step of one key; NaN: the solver has none
+  double asleep = 0;                    // keys, on average
+  long not_converged = 0;               // periods of a key with a step that reached a limit
+  Error error;  // up to the release, against 100 internal steps a period of 2 kHz of the same engine
 
   /// Against the peer with the same steps: median of the tick; undisturbed, all ticks of the scene together. NaN: there
   /// is none.
@@ -38,6 +43,20 @@ struct Row {
   /// Simulated over computing time [-].
   double real_time_factor() const { return static_cast<double>(tick.count) / (rate_Hz * tick.total); }
 };
+
+/// Which row is meant. `setting` "cheapest" or "default" finds "both" as well.
+struct RowKey {
+  std::string scene;
+  int keys = 1;
+  double rate_Hz = 2000;
+  std::string setting;
+  int threads = 1;
+  Engine engine = Engine::erard;
+  FeltModel felts = FeltModel::massless;
+};
+
+/// Null when there is none.
+const Row* find_row(const std::vector<Row>& rows, const RowKey& key);
 
 /// Fills in how erard's rows compare with the peer's.
 void compare_with_peers(std::vector<Row>& rows);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "erard/device/action_file.hpp"
 #include "erard/device/keystroke.hpp"
 #include "erard/mechanics/mechanism.hpp"
 #include "erard/solver/drive.hpp"
@@ -33,30 +34,34 @@ const Scene* find_scene(std::string_view name);
 struct Part {
   const Keystroke* keystroke = nullptr;  // null: piston at 0
   double period = 0;                     // the keystroke starts anew after this [s]; 0: never
+  double delay = 0;                      // the piston is at 0 before [s]
   DriveSample at(double time) const noexcept;
 };
 
 /// All that scenes need, loaded once.
 struct Stage {
-  Mechanism mechanism;
+  std::map<FeltModel, Mechanism> mechanisms;
   bool has_damper = true;
   std::map<std::string, Keystroke> keystrokes;
+
+  const Mechanism& mechanism(FeltModel felts = FeltModel::massless) const { return mechanisms.at(felts); }
 };
 
-/// The grand action and the keystrokes of all scenes. Throws InputError.
+/// The grand action, with felts of each kind, and the keystrokes of all scenes. Throws InputError.
 Stage load_stage(bool with_damper);
 
-/// How many of a keyboard's keys are played: all; ten, two hands' worth, but at most half of them; none.
+/// How many of a keyboard's keys are played: all; eight, but at most half of them; none.
 int played_keys(Played played, int keys);
 
 /// Simulated time after which a scene begins anew [s]: the keystroke, or 0.6 s of rest or of a keyboard.
 double duration_of(const Scene& scene, const Stage& stage);
 
-/// What each key plays. On a keyboard the played keys are spread evenly; forte and piano in turn, again and again.
+/// What each key plays. On a keyboard the played keys are spread evenly; forte and piano in turn, again and again. After
+/// duration_of() every key has begun.
 std::vector<Part> cast(const Scene& scene, const Stage& stage, int keys);
 
-/// Where in its period the part of this key begins, a share of it: multiples of the golden ratio, so that no two keys of
-/// a keyboard are in phase and every moment of a stroke is on some key at any time.
+/// When the part of this key of a keyboard begins, a share of its period: multiples of the golden ratio, so that no two
+/// keys are in phase and every moment of a stroke is on some key at any time.
 double phase_of(int key);
 
 }  // namespace erard::bench

@@ -1,40 +1,38 @@
 // The results for people.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bench/results.hpp"
+#include "bench/targets.hpp"
+#include "bench/thesis.hpp"
+#include "erard/solver/workspace.hpp"
 
 namespace erard::bench {
 namespace {
 
-/// "12.3", or "-" for what is not there.
-std::string cell(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
-
-/// Three digits that matter.
-std::string time_cell(double seconds) {
-  const double us = 1e6 * seconds;
-  return cell(us, us < 10 ? 2 : us < 100 ? 1 : 0);
-}
-
 /// Which entrant: the first columns of both tables.
 std::string entrant_of(const Row& r) {
-  return fmt::format("{:<7}{:<14}{:>4}{:>6.0f} {:<9}{:>3}", name_of(r.engine), r.scene, r.keys, r.rate_Hz, r.setting,
-                     r.substeps);
+  const std::string scene = r.felts == FeltModel::massless ? r.scene : fmt::format("{} {}", r.scene, name_of(r.felts));
+  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>6.0f} {:<9}{:>3}", name_of(r.engine), scene, r.keys,
+                     cell(r.asleep, 1), r.threads, r.rate_Hz, r.setting, r.substeps);
 }
 std::string entrant_head() {
-  return fmt::format("{:<7}{:<14}{:>4}{:>6} {:<9}{:>3}", "engine", "scene", "keys", "Hz", "setting", "n");
+  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>6} {:<9}{:>3}", "engine", "scene", "keys", "asleep", "thr", "Hz",
+                     "setting", "n");
 }
+constexpr int kEntrant = 54;  // characters of it
 
 std::string times_of(const Row& r) {
   const Distribution& t = r.tick;
   const auto share = fmt::format("{}{}", std::isnan(t.p999) ? "<" : "", cell(100 * r.share(), 1));
-  return fmt::format("{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>9}{:>7}{:>8}\n", t.count, time_cell(t.min),
-                     time_cell(t.median), time_cell(t.p99), time_cell(t.p999), time_cell(t.p9999), time_cell(t.max),
-                     share, cell(r.real_time_factor(), r.real_time_factor() < 10 ? 2 : 0), time_cell(r.noise.tail()));
+  return fmt::format("{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>9}{:>7}{:>8}\n", t.count, us_cell(t.min), us_cell(t.median),
+                     us_cell(t.p99), us_cell(t.p999), us_cell(t.p9999), us_cell(t.max), share,
+                     cell(r.real_time_factor(), r.real_time_factor() < 10 ? 2 : 0), us_cell(r.noise.tail()));
 }
 std::string times_head() {
   return fmt::format("{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>9}{:>7}{:>8}\n", "ticks", "min", "median", "p99", "p99.9",
@@ -42,9 +40,9 @@ std::string times_head() {
 }
 
 std::string work_of(const Row& r) {
-  return fmt::format("{:>8}{:>8}{:>10}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}{:>8}\n", time_cell(r.step.median),
-                     time_cell(r.step.p999), time_cell(r.undisturbed.median), time_cell(r.undisturbed.p99),
-                     time_cell(r.undisturbed.max), cell(r.iterations, 1), cell(r.sweeps, 1), cell(100 * r.error.eta, 2),
+  return fmt::format("{:>8}{:>8}{:>10}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}{:>8}\n", us_cell(r.step.median),
+                     us_cell(r.step.p999), us_cell(r.undisturbed.median), us_cell(r.undisturbed.p99),
+                     us_cell(r.undisturbed.max), cell(r.iterations, 1), cell(r.sweeps, 1), cell(100 * r.error.eta, 2),
                      cell(r.error.rms_N, 3), cell(r.times_peer_median, 2), cell(r.times_peer_undisturbed, 2));
 }
 std::string work_head() {
@@ -64,6 +62,29 @@ std::string all_lines(const std::vector<Row>& rows, std::string (*rest_of)(const
   return text;
 }
 
+std::string thesis_lines(const std::vector<Row>& rows) {
+  const std::vector<ThesisLine> lines = beside_thesis(rows);
+  if (lines.empty()) return {};
+  std::string text =
+      fmt::format("\n{:<46}{:>12}{:>12}{:>12}{:>12}\n", "beside the thesis: piano, a step of 500 us [us]", "thesis",
+                  "here", "undisturbed", "times less");
+  for (const ThesisLine& line : lines)
+    text += fmt::format("{:<46}{:>12}{:>12}{:>12}{:>12}\n", line.model, us_cell(line.thesis), us_cell(line.measured),
+                        us_cell(line.undisturbed), cell(line.thesis / line.measured, 0));
+  return text + thesis_note();
+}
+
+std::string target_lines(const std::vector<Row>& rows) {
+  const std::vector<Target> targets = targets_of(rows);
+  if (std::none_of(targets.begin(), targets.end(), [](const Target& each) { return each.is_measured(); })) return {};
+  std::string text = fmt::format("\n{:<76}{:>10}{:>10}{:>13}\n", "targets", "at most", "measured", "undisturbed");
+  for (const Target& target : targets)
+    text += fmt::format("{:<76}{:>10}{:>10}{:>13} {:<6}{}{}\n", target.claim, fmt::format("{:g}", target.limit),
+                        three_digits(target.measured), three_digits(target.undisturbed), target.unit, verdict(target),
+                        target.where.starts_with("keyboard") || target.where.empty() ? "" : ", " + target.where);
+  return text;
+}
+
 /// Median over the rows, of what is there.
 double typical(const std::vector<Row>& rows, double (*value_of)(const Row&)) {
   std::vector<double> values;
@@ -73,6 +94,26 @@ double typical(const std::vector<Row>& rows, double (*value_of)(const Row&)) {
 }
 
 }  // namespace
+
+std::string cell(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
+
+std::string three_digits(double value) { return cell(value, value < 10 ? 2 : value < 100 ? 1 : 0); }
+
+std::string us_cell(double seconds) { return three_digits(1e6 * seconds); }
+
+std::string noise_line(const std::vector<Row>& rows) {
+  const double floor = typical(rows, [](const Row& row) { return row.noise.median; });
+  const double floor99 = typical(rows, [](const Row& row) { return row.noise.p99; });
+  const double floor999 = typical(rows, [](const Row& row) { return row.noise.p999; });
+  return fmt::format("Noise floor: fixed work of {} us takes {} us (p99) and {} us (p99.9) in the typical row.\n",
+                     us_cell(floor), us_cell(floor99), us_cell(floor999));
+}
+
+std::string memory_of_an_action() {
+  constexpr std::size_t kAll = sizeof(Mechanism) + sizeof(State) + sizeof(Workspace);
+  return fmt::format("{} bytes: Mechanism {}, State {}, Workspace {}", kAll, sizeof(Mechanism), sizeof(State),
+                     sizeof(Workspace));
+}
 
 std::string table(const Results& results) {
   std::string text;
@@ -84,28 +125,27 @@ std::string table(const Results& results) {
       {"scheduling", c.scheduling},
       {"clock", fmt::format("{:.0f} ns a look, subtracted", 1e9 * c.clock_overhead)},
       {"peer", c.peer.empty() ? "not installed" : c.peer},
-      {"damper", results.has_damper ? "on" : "off"}};
+      {"damper", results.has_damper ? "on" : "off"},
+      {"memory", memory_of_an_action()}};
   for (const auto& [name, value] : lines) text += fmt::format("{:<12} {}\n", name, value);
-  text += fmt::format("\n{:43}one period of all keys, a tick [us]\n{}{}", "", entrant_head(), times_head());
+  text += fmt::format("\n{:{}}one period of all keys, a tick [us]\n{}{}", "", kEntrant, entrant_head(), times_head());
   text += all_lines(results.rows, times_of);
-  const double floor = typical(results.rows, [](const Row& row) { return row.noise.median; });
-  const double floor99 = typical(results.rows, [](const Row& row) { return row.noise.p99; });
-  const double floor999 = typical(results.rows, [](const Row& row) { return row.noise.p999; });
-  text += fmt::format(
-      "\nnoise floor: fixed work of {} us takes {} us (p99) and {} us (p99.9) in the typical row; the last column has "
-      "its p99.9\n",
-      time_cell(floor), time_cell(floor99), time_cell(floor999));
+  text += fmt::format("\n{}", noise_line(results.rows));
   text +=
-      "n: internal steps a period; % of T: p99.9 of the tick (<: its maximum, for want of samples) as a share of the "
+      "noise: its p99.9 in this row; asleep: keys that are left alone, on average; thr: threads; n: internal steps a "
+      "period; % of T: p99.9 of the tick (<: its maximum, for want of samples) as a share of the "
       "period;\n-: not measured, or too few samples to tell\n";
-  text += fmt::format("\n{:43}{:>16}{:>26}{:>16}{:>16}{:>18}\n{}{}", "", "one step [us]", "undisturbed tick [us]",
-                      "a step", "error of force", "times the peer", entrant_head(), work_head());
+  text +=
+      fmt::format("\n{:{}}{:>16}{:>26}{:>16}{:>16}{:>18}\n{}{}", "", kEntrant, "one step [us]", "undisturbed tick [us]",
+                  "a step", "error of force", "times the peer", entrant_head(), work_head());
   std::vector<Row> told = results.rows;
-  std::erase_if(told, [](const Row& row) { return row.step.count == 0 && std::isnan(row.times_peer_median); });
+  std::erase_if(told, [](const Row& row) { return row.step.count == 0 && row.undisturbed.count == 0; });
   text += all_lines(told, work_of);
   text +=
       "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
       "steps of the same engine\n";
+  text += thesis_lines(results.rows);
+  text += target_lines(results.rows);
 #ifndef __OPTIMIZE__
   text += "NOTE: built without optimisation, these are not the engine's times\n";
 #endif

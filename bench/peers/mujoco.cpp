@@ -77,48 +77,56 @@ class MujocoKeyboard : public Contender {
  public:
   MujocoKeyboard(const Stage& stage, const Job& job)
       : model_(load(stage.has_damper, 1 / (job.rate_Hz * job.substeps))),
-        finger_(stage.mechanism.model.finger),
+        finger_(stage.mechanism().model.finger),
         substeps_(job.substeps),
         parts_(cast(*job.scene, stage, job.keys)),
-        origin_(parts_.size(), 0.0) {
+        pistons_(parts_.size() * static_cast<std::size_t>(substeps_)) {
     DataHolder rest(mj_makeData(model_.get()));
     key_ = mj_name2id(model_.get(), mjOBJ_JOINT, "K");
     dof_ = model_->jnt_dofadr[key_];
     key_armature_ = model_->dof_armature[dof_];
     settle(stage, *rest);
-    start_.resize(parts_.size());
-    for (std::size_t k = 0; k < parts_.size(); ++k) start_[k].reset(mj_copyData(nullptr, model_.get(), rest.get()));
-    for (std::size_t k = 0; k < parts_.size(); ++k)
-      if (parts_[k].period > 0 && origin_[k] == 0) bring_to_phase(k, *rest);
-    for (const DataHolder& each : start_) keys_.emplace_back(mj_copyData(nullptr, model_.get(), each.get()));
+    for (std::size_t k = 0; k < parts_.size(); ++k) keys_.emplace_back(mj_copyData(nullptr, model_.get(), rest.get()));
+    const long play_in = job.scene->is_keyboard ? std::lround(duration_of(*job.scene, stage) * job.rate_Hz) : 0;
+    for (; ticks_ < play_in;) {
+      MujocoKeyboard::prepare();
+      MujocoKeyboard::tick({});
+    }
+    for (const DataHolder& each : keys_) start_.emplace_back(mj_copyData(nullptr, model_.get(), each.get()));
+    start_ticks_ = ticks_;
   }
 
   void start() override {
     for (std::size_t k = 0; k < keys_.size(); ++k) mj_copyData(keys_[k].get(), model_.get(), start_[k].get());
-    ticks_ = 0;
+    ticks_ = start_ticks_;
   }
 
-  Effort tick(StepClock steps) override {
-    Effort effort;
+  void prepare() override {
     const double h = model_->opt.timestep;
+    std::size_t next = 0;
+    for (const Part& part : parts_)
+      for (int i = 1; i <= substeps_; ++i) pistons_[next++] = part.at(static_cast<double>(ticks_ * substeps_ + i) * h);
+  }
+
+  void tick(StepClock steps) override {
+    effort_ = {};
+    const DriveSample* piston = pistons_.data();
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       mjData& data = *keys_[k];
-      const double begin = origin_[k] + static_cast<double>(ticks_ * substeps_) * h;
-      for (int i = 1; i <= substeps_; ++i) {
-        const DriveSample piston = parts_[k].at(begin + i * h);
-        step(data, piston);
+      for (int i = 0; i < substeps_; ++i, ++piston) {
+        step(data, *piston);
         steps.mark();
-        ++effort.steps;
-        effort.iterations += data.solver_niter[0];
-        effort.not_converged += data.solver_niter[0] >= model_->opt.iterations;
-        if (k == 0) force_ = force_at(data, piston);
+        ++effort_.steps;
+        effort_.iterations += data.solver_niter[0];
+        effort_.not_converged += data.solver_niter[0] >= model_->opt.iterations;
       }
-      effort.is_finite = effort.is_finite && std::isfinite(data.qpos[model_->jnt_qposadr[key_]]);
+      if (k == 0) force_ = force_at(data, piston[-1]);
+      effort_.is_finite = effort_.is_finite && std::isfinite(data.qpos[model_->jnt_qposadr[key_]]);
     }
     ++ticks_;
-    return effort;
   }
 
+  Effort effort() const override { return effort_; }
   double force() const override { return force_; }
 
  private:
@@ -146,7 +154,7 @@ class MujocoKeyboard : public Contender {
   }
 
   void settle(const Stage& stage, mjData& data) {
-    const Model& action = stage.mechanism.model;
+    const Model& action = stage.mechanism().model;
     for (int i = 0; i < action.body_count; ++i) {
       const int joint = mj_name2id(model_.get(), mjOBJ_JOINT, std::string(action.bodies[i].name.view()).c_str());
       if (joint >= 0) data.qpos[model_->jnt_qposadr[joint]] = action.bodies[i].initial;
@@ -156,34 +164,17 @@ class MujocoKeyboard : public Contender {
     rest_angle_ = data.qpos[model_->jnt_qposadr[key_]];
   }
 
-  /// As Keyboard::bring_to_phase(): the second of two periods is handed out.
-  void bring_to_phase(std::size_t k, const mjData& rest) {
-    const Part part = parts_[k];
-    const double h = model_->opt.timestep;
-    const long period = std::lround(part.period / (h * substeps_));  // [ticks]
-    const DataHolder data(mj_copyData(nullptr, model_.get(), &rest));
-    for (long i = 0; i < 2 * period; ++i) {
-      const double time = static_cast<double>(i * substeps_) * h;
-      for (std::size_t j = 0; j < parts_.size(); ++j) {
-        const long begin = period + static_cast<long>(phase_of(static_cast<int>(j)) * static_cast<double>(period));
-        if (parts_[j].keystroke != part.keystroke || begin != i) continue;
-        mj_copyData(start_[j].get(), model_.get(), data.get());
-        origin_[j] = time;
-      }
-      for (int s = 1; s <= substeps_; ++s) step(*data, part.at(time + s * h));
-    }
-  }
-
   ModelHolder model_;  // one for all keys; the armature of the key changes with the key that is stepped
   Finger finger_;
   int substeps_;
   std::vector<Part> parts_;
-  std::vector<double> origin_;  // of each key's time [s]
+  std::vector<DriveSample> pistons_;  // of the next period: substeps of each key
   std::vector<DataHolder> start_, keys_;
   int key_ = 0, dof_ = 0;
   double key_armature_ = 0;  // [kg m^2]
   double rest_angle_ = 0;    // [rad]
-  long ticks_ = 0;
+  long ticks_ = 0, start_ticks_ = 0;
+  Effort effort_;     // of the last period
   double force_ = 0;  // of the first key [N]
 };
 
