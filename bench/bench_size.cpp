@@ -1,28 +1,27 @@
 // What the linear part of a step costs as the mechanism grows, by method. Writes size.csv and images/size.svg into a folder,
-// and the tables of docs/performance_size.md to the screen:
-//   build/release/bin/bench_size [FOLDER]        (default: docs; less than 2 minutes)
+// and the tables to the screen and into a page that has a place for them:
+//   build/release/bin/bench_size docs --markdown docs/performance.md        (less than 2 minutes)
 #include <fmt/format.h>
-#include <fmt/os.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <map>
+#include <optional>
 #include <string>
 
 #include "branch_system.hpp"
 #include "erard/device/action_file.hpp"
 #include "erard/device/config_dir.hpp"
+#include "erard/device/error.hpp"
 #include "erard/sparse/constrained_system.hpp"
 #include "erard/sparse/delassus.hpp"
 #include "erard/sparse/keyboard.hpp"
-#include "growth.hpp"
 #include "large_tree.hpp"
+#include "markdown_block.hpp"
 #include "played_steps.hpp"
-#include "study/figure.hpp"
-#include "timing.hpp"
+#include "size_report.hpp"
 
 namespace {
 
@@ -34,17 +33,6 @@ using Eigen::VectorXd;
 /// One mechanism: A with rows H, or with constraints G.
 struct Problem {
   SparseMatrix A, H, G;
-};
-
-struct Measured {
-  std::string family, method;
-  int size = 0, rows = 0;
-  long entries = 0;     // of the factor below the diagonal
-  double analysis = 0;  // once [s]
-  Times factorise, solve, delassus, noise;
-
-  double shortest() const { return factorise.shortest + solve.shortest + delassus.shortest; }
-  double median() const { return factorise.median + solve.median + delassus.median; }
 };
 
 /// Times one method. `delassus` may be empty.
@@ -117,32 +105,17 @@ void time_in_place(const Problem& problem, Measured& line) {
       });
 }
 
-void time_branches(const Problem& problem, Measured& line) {
+/// A tree's own elimination, and W from its factor.
+/// @param System  BranchSystem or DefiniteSystem
+template <typename System>
+void time_tree(const Problem& problem, Measured& line) {
   const auto start = Clock::now();
-  BranchSystem system(problem.A);
+  System system(problem.A);
   Delassus delassus(system.factor(), problem.H);
   line.analysis = seconds_since(start);
   line.entries = static_cast<long>(system.factor().row.size());
   const VectorXd b = VectorXd::Ones(problem.A.rows());
   VectorXd x = b;
-  time_parts(
-      line, [&] { system.factorise(problem.A); },
-      [&] {
-        x = b;
-        system.solve(x);
-      },
-      [&] { delassus.update(system.factor(), problem.H); });
-}
-
-void time_ldl(const Problem& problem, Measured& line) {
-  const auto start = Clock::now();
-  DefiniteSystem system(problem.A);
-  Delassus delassus(system.factor(), problem.H);
-  line.analysis = seconds_since(start);
-  line.entries = system.factor_entries();
-  const VectorXd b = VectorXd::Ones(problem.A.rows());
-  VectorXd x = b;
-  if (system.factorise(problem.A).status != FactorStatus::regular) throw std::runtime_error("LDL: singular");
   time_parts(
       line, [&] { system.factorise(problem.A); },
       [&] {
@@ -228,8 +201,8 @@ std::vector<Measured> measure_all() {
   using Timer = void (*)(const Problem&, Measured&);
   const std::vector<std::pair<std::string, Timer>> definite{{"in place", time_in_place},
                                                             {"dense", time_dense},
-                                                            {"branches", time_branches},
-                                                            {"LDL", time_ldl},
+                                                            {"branches", time_tree<BranchSystem>},
+                                                            {"LDL", time_tree<DefiniteSystem>},
                                                             {"KLU", time_klu}};
   const std::vector<std::pair<std::string, Timer>> closed{{"dense LU", time_dense_lu}, {"KLU", time_klu}};
   const Keyboards keyboards;
@@ -264,119 +237,28 @@ std::vector<Measured> measure_all() {
   return lines;
 }
 
-void write_csv(const std::filesystem::path& file, const std::vector<Measured>& lines) {
-  auto out = fmt::output_file(file.string());
-  out.print(
-      "family,method,coordinates,rows,factor_entries,analysis_us,factorise_min_us,factorise_median_us,solve_min_us,"
-      "solve_median_us,delassus_min_us,delassus_median_us,total_min_us,total_median_us,noise_min_us,noise_median_us\n");
-  for (const Measured& line : lines) {
-    out.print("{},{},{},{},{},{:.3f}", line.family, line.method, line.size, line.rows, line.entries,
-              1e6 * line.analysis);
-    for (const Times& times : {line.factorise, line.solve, line.delassus})
-      out.print(",{:.4f},{:.4f}", 1e6 * times.shortest, 1e6 * times.median);
-    out.print(",{:.4f},{:.4f},{:.3f},{:.3f}\n", 1e6 * line.shortest(), 1e6 * line.median(), 1e6 * line.noise.shortest,
-              1e6 * line.noise.median);
-  }
-}
-
-/// family -> method -> time over size
-using Curves = std::vector<std::pair<std::string, std::vector<std::pair<std::string, Growth>>>>;
-
-Curves curves_of(const std::vector<Measured>& lines, double (*value)(const Measured&)) {
-  Curves curves;
-  for (const Measured& line : lines) {
-    if (curves.empty() || curves.back().first != line.family) curves.push_back({line.family, {}});
-    auto& methods = curves.back().second;
-    auto found = std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == line.method; });
-    if (found == methods.end()) found = methods.insert(methods.end(), {line.method, {}});
-    found->second.size.push_back(line.size);
-    found->second.time.push_back(value(line));
-  }
-  return curves;
-}
-
-void draw_curves(const std::filesystem::path& file, const Curves& curves) {
-  std::vector<study::Panel> panels;
-  for (const auto& [family, methods] : curves) {
-    study::Panel panel;
-    panel.title = family;
-    panel.x = {"coordinates", {1, 2500}, true};
-    panel.y = {"shortest time [us]", {0.02, 3e6}, true};
-    panel.key = "top left";
-    for (const auto& [method, growth] : methods) {
-      study::Curve curve{method, growth.size, {}, "lines linewidth 2"};
-      for (const double time : growth.time) curve.y.push_back(1e6 * time);
-      panel.curves.push_back(curve);
-    }
-    panels.push_back(panel);
-  }
-  study::draw(file, panels, 2, 520, 360);
-}
-
-void print_growth(const Curves& whole, const Curves& factor) {
-  fmt::print(
-      "| mechanism | method | factorise grows as n^ | all grows as n^ | all, some 32 coordinates [us] | all, largest "
-      "[us] |\n|---|---|---|---|---|---|\n");
-  for (std::size_t f = 0; f < whole.size(); ++f)
-    for (std::size_t m = 0; m < whole[f].second.size(); ++m) {
-      const auto& [method, growth] = whole[f].second[m];
-      double small = 0;
-      for (std::size_t i = 0; i < growth.size.size(); ++i)
-        if (growth.size[i] <= 32) small = growth.time[i];
-      const auto power = [](const Growth& of) {
-        const double p = exponent(of, 128);
-        return std::isnan(p) ? std::string("-") : fmt::format("{:.2f}", p);
-      };
-      fmt::print("| {} | {} | {} | {} | {:.2f} | {:.3g} at {:.0f} |\n", whole[f].first, method,
-                 power(factor[f].second[m].second), power(growth), 1e6 * small, 1e6 * growth.time.back(),
-                 growth.size.back());
-    }
-}
-
-void print_crossovers(const Curves& whole, const Curves& factor) {
-  fmt::print("\n| mechanism | from here on | is faster than | factorise | all |\n|---|---|---|---|---|\n");
-  const auto text = [](const Growth& one, const Growth& other) {
-    const double size = crossover(one, other);
-    return std::isnan(size) ? fmt::format("not up to {:.0f}", std::min(one.size.back(), other.size.back()))
-                            : fmt::format("{:.0f}", size);
-  };
-  for (std::size_t f = 0; f < whole.size(); ++f)
-    for (std::size_t a = 0; a < whole[f].second.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b)
-        fmt::print("| {} | {} | {} | {} | {} |\n", whole[f].first, whole[f].second[a].first, whole[f].second[b].first,
-                   text(factor[f].second[a].second, factor[f].second[b].second),
-                   text(whole[f].second[a].second, whole[f].second[b].second));
-}
-
-void print_noise(const std::vector<Measured>& lines) {
-  std::vector<double> shortest, spread;
-  for (const Measured& line : lines) {
-    shortest.push_back(line.noise.shortest);
-    spread.push_back(line.median() / line.shortest());
-  }
-  const auto [low, high] = std::minmax_element(shortest.begin(), shortest.end());
-  fmt::print(
-      "\nNoise: the shortest time of a loop of fixed work beside every measurement was {:.1f} to {:.1f} us (median "
-      "{:.1f}); the median time of a method is {:.2f} times its shortest in the middle, {:.1f} times at worst.\n",
-      1e6 * *low, 1e6 * *high, 1e6 * times_of(shortest).median, times_of(spread).median,
-      *std::max_element(spread.begin(), spread.end()));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const std::filesystem::path folder = argc > 1 ? argv[1] : "docs";
-  const auto start = Clock::now();
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool has_page = arguments.size() == 3 && arguments[1] == "--markdown";
+  if (arguments.empty() || arguments[0].starts_with("-") || (arguments.size() > 1 && !has_page)) {
+    fmt::print(stderr, "usage: bench_size FOLDER [--markdown FILE]\n");
+    return 2;
+  }
+  const std::filesystem::path folder = arguments[0];
+  std::optional<MarkdownBlock> page;
+  if (has_page) page.emplace(arguments[2], "bench_size");
   const std::vector<Measured> lines = measure_all();
   std::filesystem::create_directories(folder / "images");
   write_csv(folder / "size.csv", lines);
-  const Curves whole = curves_of(lines, [](const Measured& line) { return line.shortest(); });
-  const Curves factor = curves_of(lines, [](const Measured& line) { return line.factorise.shortest; });
-  draw_curves(folder / "images" / "size.svg", whole);
-  print_growth(whole, factor);
-  print_crossovers(whole, factor);
-  print_noise(lines);
-  fmt::print("Took {:.0f} s.\n", seconds_since(start));
+  draw_curves(folder / "images" / "size.svg", lines);
+  const std::string text = size_tables(lines);
+  if (page) page->replace(text);
+  fmt::print("{}", text);
+} catch (const erard::InputError& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 2;
 } catch (const std::exception& error) {
   fmt::print(stderr, "bench_size: {}\n", error.what());
   return 1;

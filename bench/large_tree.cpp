@@ -15,6 +15,8 @@ Vector2 point_rate_of(const Body& body, const Frame& frame, const Vector2& point
   return body.joint == JointKind::hinge ? perp(point - frame.origin) : frame.slide;
 }
 
+constexpr int kMostTouches = 500;  // contacts that the bench asks for
+
 struct Lever {
   int coordinate;
   double value;
@@ -110,9 +112,23 @@ class RandomBodies {
   }
   Vector2 direction() { return unit_vector(between(-std::numbers::pi, std::numbers::pi)); }
 
+  /// Hangs one more body on that parent, at any angle.
+  void grow(LargeTree& tree, int parent) {
+    tree.bodies.push_back(body(parent));
+    tree.x.push_back(between(-3, 3));
+  }
+
  private:
   std::mt19937 random_;
 };
+
+/// A touch to every four bodies, as many as the bench asks for.
+/// @param make  called as make(frames)
+template <typename MakeTouch>
+void add_touches(LargeTree& tree, const MakeTouch& make) {
+  const std::vector<Frame> frames = place(tree);
+  for (int k = 0; k < std::min(tree.size() / 4, kMostTouches); ++k) tree.touches.push_back(make(frames));
+}
 
 }  // namespace
 
@@ -155,7 +171,7 @@ SparseMatrix iteration_matrix(const LargeTree& tree) {
 SparseMatrix row_directions(const LargeTree& tree) {
   std::vector<Vector2> along;
   for (const Touch& touch : tree.touches) along.push_back(touch.row);
-  if (along.size() > 500) along.resize(500);  // as many contacts as the bench asks for
+  if (along.size() > kMostTouches) along.resize(kMostTouches);
   std::vector<Touch> touches(tree.touches.begin(), tree.touches.begin() + static_cast<std::ptrdiff_t>(along.size()));
   return directions(tree, touches, along);
 }
@@ -175,12 +191,10 @@ LargeTree bush(int size, unsigned seed) {
   tree.pull = 0.01;
   std::vector<std::vector<int>> children(static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) {
-    tree.bodies.push_back(random.body(i == 0 ? kGround : random.below(i)));
-    tree.x.push_back(random.between(-3, 3));
+    random.grow(tree, i == 0 ? kGround : random.below(i));
     if (i > 0) children[tree.bodies[i].parent].push_back(i);
   }
-  const std::vector<Frame> frames = place(tree);
-  for (int k = 0; k < std::min(size / 4, 500); ++k) {
+  add_touches(tree, [&](const std::vector<Frame>& frames) {
     Touch touch;
     touch.body_b = 1 + random.below(size - 1);
     // a sibling, a child of the grandparent, or the ground
@@ -193,8 +207,8 @@ LargeTree bush(int size, unsigned seed) {
     touch.felt = random.direction();
     touch.row = perp(touch.felt);
     touch.loss = random.between(0.005, 0.05);  // a felt of 1e5 N/m over steps of 1/4 ms and theta = 1/2: 3 g
-    tree.touches.push_back(touch);
-  }
+    return touch;
+  });
   return tree;
 }
 
@@ -202,18 +216,14 @@ LargeTree chain(int size, unsigned seed) {
   RandomBodies random(seed);
   LargeTree tree;
   tree.pull = 0.01;
-  for (int i = 0; i < size; ++i) {
-    tree.bodies.push_back(random.body(i - 1));
-    tree.x.push_back(random.between(-3, 3));
-  }
-  const std::vector<Frame> frames = place(tree);
-  for (int k = 0; k < std::min(size / 4, 500); ++k) {
+  for (int i = 0; i < size; ++i) random.grow(tree, i - 1);
+  add_touches(tree, [&](const std::vector<Frame>& frames) {
     Touch touch;
     touch.body_b = random.below(size);
     touch.point = frames[touch.body_b].origin + 0.02 * random.direction();
     touch.row = random.direction();
-    tree.touches.push_back(touch);
-  }
+    return touch;
+  });
   return tree;
 }
 
@@ -248,10 +258,7 @@ LargeTree linkages(int count, unsigned seed) {
   tree.bodies[0].mass = 40;
   tree.x.push_back(0);
   for (int k = 0; k < count; ++k)
-    for (int i = 0; i < 3; ++i) {
-      tree.bodies.push_back(random.body(i == 0 ? 0 : tree.size() - 1));
-      tree.x.push_back(random.between(-3, 3));
-    }
+    for (int i = 0; i < 3; ++i) random.grow(tree, i == 0 ? 0 : tree.size() - 1);
   const std::vector<Frame> frames = place(tree);
   for (int k = 0; k < count; ++k) {
     Touch closure;

@@ -115,7 +115,7 @@ std::string markdown(const Results& results) {
   std::string text = fmt::format("Commit {}, {}; {}, {}; {}; {}; damper {}. One action takes {}.\n", c.commit,
                                  c.compiler, c.cpu, c.kernel, c.scheduling, c.peer.empty() ? "no peer" : c.peer,
                                  results.has_damper ? "on" : "off", memory_of_an_action());
-  text += noise_line(results.rows);
+  text += noise_line(results.rows) + resting_line(results.rows);
   text += targets(results.rows);
   text += strokes(results.rows);
   text += rates(results.rows);

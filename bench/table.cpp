@@ -97,7 +97,7 @@ double typical(const std::vector<Row>& rows, double (*value_of)(const Row&)) {
 
 std::string cell(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
 
-std::string three_digits(double value) { return cell(value, value < 10 ? 2 : value < 100 ? 1 : 0); }
+std::string three_digits(double value) { return cell(value, value < 0.1 ? 4 : value < 10 ? 2 : value < 100 ? 1 : 0); }
 
 std::string us_cell(double seconds) { return three_digits(1e6 * seconds); }
 
@@ -144,6 +144,7 @@ std::string table(const Results& results) {
   text +=
       "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
       "steps of the same engine\n";
+  text += fmt::format("\n{}", resting_line(results.rows));
   text += thesis_lines(results.rows);
   text += target_lines(results.rows);
 #ifndef __OPTIMIZE__

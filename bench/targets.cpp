@@ -1,8 +1,12 @@
 #include "bench/targets.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "bench/results.hpp"
 
 namespace erard::bench {
 namespace {
@@ -86,6 +90,18 @@ std::string verdict(const Target& target) {
   if (!target.is_measured()) return "not measured";
   if (target.is_met()) return "met";
   return target.is_met_undisturbed() ? "missed (met undisturbed)" : "missed";
+}
+
+std::string resting_line(const std::vector<Row>& rows) {
+  const Row* awake = find_row(rows, {"rest", 1, kMainRate_Hz, "cheapest"});
+  const Row* asleep = find_row(rows, {"keyboard_none", kLargeKeyboard, kMainRate_Hz, "cheapest"});
+  std::string text;
+  if (awake != nullptr) text += fmt::format(" {} us awake (rest)", three_digits(kMicro * awake->tick.median));
+  if (asleep != nullptr)
+    text += fmt::format("{} {} us {} (one of {})", text.empty() ? "" : ",",
+                        three_digits(kMicro * asleep->tick.median / asleep->keys),
+                        asleep->may_sleep ? "left alone" : "with sleep off", asleep->keys);
+  return text.empty() ? text : fmt::format("A key at rest takes{} a period, median.\n", text);
 }
 
 std::vector<Target> targets_of(const std::vector<Row>& rows) {

@@ -26,6 +26,9 @@ struct Target {
 /// All targets; those of scenes, rates or settings that were not played are not measured.
 std::vector<Target> targets_of(const std::vector<Row>& rows);
 
+/// "A key at rest takes 0.88 us a period awake (rest), 0.0009 us left alone (one of 88)." Empty when neither was measured.
+std::string resting_line(const std::vector<Row>& rows);
+
 /// "met", "missed", "missed (met undisturbed)" or "not measured".
 std::string verdict(const Target& target);
 

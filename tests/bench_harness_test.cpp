@@ -11,12 +11,14 @@
 
 #include "bench/distribution.hpp"
 #include "bench/contender.hpp"
+#include "bench/least_work.hpp"
 #include "bench/plan.hpp"
 #include "bench/row.hpp"
 #include "bench/sample_set.hpp"
 #include "bench/targets.hpp"
 #include "bench/thesis.hpp"
 #include "erard/device/key_pool.hpp"
+#include "erard/mechanics/rest.hpp"
 #include "support/strokes.hpp"
 
 namespace erard::bench {
@@ -312,6 +314,45 @@ TEST(Thesis, TookTenMillisecondsAStep) {
   EXPECT_DOUBLE_EQ(lines[0].thesis, 0.010);      // 20 s for 2000 steps of 0.5 ms
   EXPECT_NEAR(lines[0].measured, 20e-6, 1e-12);  // felts as bodies first, as in the thesis
   EXPECT_NEAR(lines[1].undisturbed, 1e-6, 1e-12);
+}
+
+double of(const Work& work, Phase phase) { return work[static_cast<std::size_t>(phase)]; }
+
+TEST(LeastWork, OfTheFactorisationIsWhatADenseEliminationTouchesThatKnowsTheZeros) {
+  const Stage stage = load_stage(true);
+  const Mechanism& mechanism = stage.mechanism();
+  const int n = mechanism.coordinate_count;
+  std::vector<std::vector<bool>> is_set(static_cast<std::size_t>(n), std::vector<bool>(static_cast<std::size_t>(n)));
+  for (int k = 0; k < n; ++k)
+    for (int a = 0; a < mechanism.elimination.count[k]; ++a)
+      is_set[static_cast<std::size_t>(k)][static_cast<std::size_t>(mechanism.elimination.list[k][a])] = true;
+  double count = 0;
+  for (std::size_t k = is_set.size(); k-- > 0;) {
+    count += 3;  // 1/D, its product with the load, the load itself
+    for (std::size_t i = 0; i < k; ++i) {
+      if (!is_set[k][i]) continue;
+      count += 1 + 2 + 2;  // L, a load upwards, downwards
+      for (std::size_t j = 0; j <= i; ++j) count += is_set[k][j] ? 2 : 0;
+    }
+  }
+  EXPECT_EQ(of(least_work(mechanism, rest_state(mechanism, 5e-4)), Phase::factorisation), count);
+}
+
+TEST(LeastWork, HasOnePowerForEachFeltThatIsClosedAndNoOneStepProblem) {
+  const Stage stage = load_stage(true);
+  const Mechanism& mechanism = stage.mechanism();
+  State state = rest_state(mechanism, 5e-4);
+  state.impulse.setZero();
+  state.compression.setZero();
+  const Work open = least_work(mechanism, state);
+  EXPECT_EQ(of(open, Phase::felt_laws), 0);
+  EXPECT_EQ(of(open, Phase::rows) + of(open, Phase::sweeps), 0);
+  state.impulse[mechanism.normal_row[0]] = 1;
+  const Work closed = least_work(mechanism, state);
+  EXPECT_GT(of(closed, Phase::felt_laws), 50);   // a power counts as many
+  EXPECT_LT(of(closed, Phase::felt_laws), 100);  // one of them
+  EXPECT_EQ(of(closed, Phase::gaps), of(open, Phase::gaps));
+  EXPECT_GT(of(closed, Phase::linearisation), of(open, Phase::linearisation));
 }
 
 TEST(Row, ComparesWithThePeerAtTheSameNumberOfSteps) {
