@@ -26,6 +26,15 @@ struct LineInput {
   }
 };
 
+/// One period of one key that is awake.
+struct Turn {
+  int key = 0;
+  int model = 0;  // number of its mechanism among those that differ
+  LineInput input;
+  State* state = nullptr;
+  TickReport report;  // of whoever plays it
+};
+
 /// n actions that share a clock, settings and nothing else. Memory: a Mechanism (18 kB) for each different model, for
 /// each key two States (3.3 kB) and 32 bytes to look at, one Workspace (100 kB).
 ///
@@ -94,6 +103,20 @@ class Keyboard {
   }
   void end_tick() noexcept { ++ticks_; }
 
+  /// The same by somebody who plays many keys together.
+  /// @param play   called as play(turns), noexcept; does with each of them what erard::tick() does
+  /// @param turns  scratch, with room for all keys of the share
+  template <typename Play>
+  void tick_share_by(Play&& play, int share, int shares, std::span<const DriveSample> inputs,
+                     std::span<Turn> turns) noexcept {
+    assert(inputs.size() == key_.size());
+    std::size_t count = 0;
+    for (int k = share; k < size(); k += shares)
+      if (!watch_[k].is_asleep || !sleeps_on(k, inputs[k])) turns[count++] = begin_turn(k, inputs[k]);
+    play(turns.first(count));
+    for (const Turn& turn : turns.first(count)) end_turn(turn.key, inputs[turn.key], turn.report);
+  }
+
   /// From the next period on a key is an action of another of the models, in the state that it has: they may differ in
   /// numbers, not in bodies and contacts.
   void exchange_model(int key, int number) noexcept {
@@ -111,6 +134,7 @@ class Keyboard {
   }
 
   const Mechanism& mechanism(int key) const noexcept { return mechanism_[key_[key].mechanism]; }
+  std::span<const Mechanism> mechanisms() const noexcept { return mechanism_; }  // that differ, by Turn::model
 
   /// State of a key now, asleep or not.
   State state(int key) const noexcept {
@@ -142,19 +166,26 @@ class Keyboard {
     return true;
   }
 
-  template <typename Observer>
-  void play(int k, const DriveSample& input, Workspace& work, Observer&& observer) noexcept {
-    Watch& watch = watch_[k];
+  Turn begin_turn(int k, const DriveSample& input) noexcept {
     Key& key = key_[k];
-    watch.is_asleep = false;
+    watch_[k].is_asleep = false;
     key.state.time = time();
-    const TickReport report = erard::tick(
-        mechanism_[key.mechanism], settings_, LineInput{watch.last, input, time(), settings_.period}, key.state, work,
-        [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); });
+    return {k, key.mechanism, {watch_[k].last, input, time(), settings_.period}, &key.state, {}};
+  }
+
+  void end_turn(int k, const DriveSample& input, const TickReport& report) noexcept {
     force_[k] = report.force;
     status_[k] = report.status;
-    if (report.status != StepStatus::not_finite) watch.last = input;
+    if (report.status != StepStatus::not_finite) watch_[k].last = input;
     if (sleep_.is_on) fall_asleep(k, report.status == StepStatus::converged);
+  }
+
+  template <typename Observer>
+  void play(int k, const DriveSample& input, Workspace& work, Observer&& observer) noexcept {
+    const Turn turn = begin_turn(k, input);
+    end_turn(k, input,
+             erard::tick(mechanism_[turn.model], settings_, turn.input, *turn.state, work,
+                         [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); }));
   }
 
   /// Load up to which a piston leaves the key alone where it is; none does where something else drives it.

@@ -55,6 +55,22 @@ inline double end_force(const Mechanism& mechanism, const Drive& drive, const St
   return drive.kind == DriveKind::force ? drive.to.value : report.finger_force;
 }
 
+/// Enters a step into the report of its period. @return whether it was taken
+/// @param next   drive of the step
+/// @param drive  in: up to the start of the step; out: up to its end, when it was taken
+inline bool enter_step(const Mechanism& mechanism, const Drive& next, const State& state, const StepReport& stepped,
+                       Drive& drive, TickReport& report) noexcept {
+  report.linearisations += stepped.linearisations;
+  report.sweeps += stepped.sweeps;
+  if (stepped.status == StepStatus::refused) return false;
+  report.status = std::max(report.status, stepped.status);
+  if (stepped.status == StepStatus::not_finite) return false;
+  drive = next;
+  ++report.steps;
+  report.force = end_force(mechanism, drive, state, stepped);
+  return true;
+}
+
 /// Advances the mechanism from the end of `drive` on, in `count` steps of the scheme, until one is not taken.
 /// @param drive  in: up to the start; out: up to the end of the last step taken
 template <typename Input, typename Observer>
@@ -63,17 +79,18 @@ StepStatus advance(const Mechanism& mechanism, const Scheme& scheme, int count, 
   for (int i = 1; i <= count; ++i) {
     const Drive next{drive.kind, drive.to, input.at(start + i * scheme.time_step)};
     const StepReport stepped = step(mechanism, scheme, next, state, work);
-    report.linearisations += stepped.linearisations;
-    report.sweeps += stepped.sweeps;
-    if (stepped.status == StepStatus::refused) return stepped.status;
-    report.status = std::max(report.status, stepped.status);
-    if (stepped.status == StepStatus::not_finite) return stepped.status;
-    drive = next;
-    ++report.steps;
-    report.force = end_force(mechanism, drive, state, stepped);
+    if (!enter_step(mechanism, next, state, stepped, drive, report)) return stepped.status;
     observer(state, stepped, report.force);
   }
   return StepStatus::converged;
+}
+
+/// The shorter steps into which one is split that was refused.
+inline Scheme busy_scheme(const TickSettings& settings) noexcept {
+  Scheme busy = settings.scheme;
+  busy.time_step /= settings.refinement;
+  busy.surprise_limit = std::numeric_limits<double>::infinity();
+  return busy;
 }
 
 /// Advances the mechanism by one period.
@@ -85,9 +102,7 @@ TickReport tick(const Mechanism& mechanism, const TickSettings& settings, const 
                 Workspace& work, Observer&& observer) noexcept {
   TickReport report;
   Drive drive{settings.drive, {}, input.at(state.time)};
-  Scheme busy = settings.scheme;
-  busy.time_step /= settings.refinement;
-  busy.surprise_limit = std::numeric_limits<double>::infinity();
+  const Scheme busy = busy_scheme(settings);
   const double start = state.time;
   for (int i = 0; i < settings.substeps && report.status != StepStatus::not_finite; ++i) {
     const double from = start + i * settings.scheme.time_step;

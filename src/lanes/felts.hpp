@@ -1,0 +1,114 @@
+// Felts without mass: mechanics/felt_law.hpp in lanes, operation by operation. Both laws are worked out and chosen from;
+// their powers are taken one by one, of those that are wanted alone.
+#pragma once
+
+#include "work.hpp"
+
+namespace erard::lanes {
+
+/// Velocity or way along a direction.
+template <typename T>
+T along(const ContactPlan& contact, const T* lever, const T* rate) noexcept {
+  T sum(0.0);
+  for (int k = 0; k < contact.path_count; ++k) sum += lever[k] * rate[contact.path[k]];
+  return sum;
+}
+
+template <typename T>
+T gap_at(const ContactPlan& contact, const PlacedContact<T>& place, const T* shift) noexcept {
+  return place.gap + along(contact, place.normal_lever, shift);
+}
+
+/// Whether the path of a compression is so short that the law is taken at its middle.
+template <typename T>
+Mask<T> is_short(const T& start, const T& end, const T& middle) noexcept {
+  return (abs(end - start) <= T(1e-3) * middle) & (start > T(0.0)) & (end > T(0.0));
+}
+
+/// First pass: which felts act, and what their laws raise to a power.
+template <typename T>
+void list_powers(const Batch& batch, const Mask<T>& is_active, Work<T>& work) noexcept {
+  const T zero(0.0);
+  const Plan& plan = *batch.plan;
+  const auto& action = *static_cast<const ActionNumbers<T>*>(batch.action);
+  const auto& state = *static_cast<const StateNumbers<T>*>(batch.state);
+  work.power_count = 0;
+  for (int c = 0; c < plan.contact_count; ++c) {
+    const ContactPlan& contact = plan.contact[c];
+    const T start = state.compression[c], end = -gap_at(contact, work.contact[c], work.end_shift);
+    const auto was_closed = state.impulse[contact.row] > zero;
+    // one that arrives gives nothing until it is compressed further than it was
+    const auto is_acting = is_active & !((start <= zero) & (end <= zero)) & (was_closed | !((end <= start) | (end <= zero)));
+    work.end[c] = end;
+    work.is_acting[c] = is_acting;
+    work.first_power[c] = -1;
+    if (none(is_acting)) continue;
+    const T d0 = larger(start, zero), d1 = larger(end, zero), middle = T(0.5) * (d0 + d1);
+    const auto is_at_middle = was_closed & is_short(start, end, middle);
+    work.first_power[c] = work.power_count;
+    work.base[work.power_count] = select(is_acting, select(is_at_middle, middle, d1), zero);
+    work.base[work.power_count + 1] = select(is_acting & !is_at_middle, d0, zero);
+    for (int i = 0; i < 2; ++i) work.exponent[work.power_count++] = action.contact[c].exponent;
+  }
+}
+
+template <typename T>
+struct MeanForce {
+  T force, slope;
+};
+
+/// mean_felt_force() where the felt was closed, mean_arrival_force() where it was not.
+/// @param first, second  d_1^r, d_0^r, or the former of the middle alone
+template <typename T>
+MeanForce<T> mean_force(const ContactNumbers<T>& felt, const Mask<T>& was_closed, const T& start, const T& end,
+                        const T& from, const T& first, const T& second, double time_step) noexcept {
+  const T zero(0.0), r = felt.exponent;
+  const T d0 = larger(start, zero), d1 = larger(end, zero), s = end - start, middle = T(0.5) * (d0 + d1);
+  const auto is_at_middle = was_closed & is_short(start, end, middle);
+
+  const T f1 = felt.stiffness * first;
+  const T bend = r * (r - T(1.0)) * f1 / (middle * middle);
+  const T way = select(was_closed, s, end - from);
+  const T mean = (f1 * d1 - felt.stiffness * second * d0) / ((r + T(1.0)) * way);
+  T force = select(is_at_middle, f1 + bend * s * s / T(24.0), mean);
+  T slope = select(is_at_middle, T(0.5) * r * f1 / middle + bend * s / T(12.0), (f1 - mean) / way);
+  const auto is_still = was_closed & (s == zero) & !is_at_middle;
+  force = select(is_still, zero, force);
+  slope = select(is_still, zero, slope);
+  force += felt.damping * (d1 * d1 * d1 - d0 * d0 * d0) / T(3 * time_step);
+  slope += felt.damping * d1 * d1 / T(time_step);
+  return {force, slope};
+}
+
+template <typename T>
+void add_massless_felts(const Batch& batch, const Mask<T>& is_active, Work<T>& work) noexcept {
+  const T zero(0.0);
+  const Plan& plan = *batch.plan;
+  const auto& action = *static_cast<const ActionNumbers<T>*>(batch.action);
+  const auto& state = *static_cast<const StateNumbers<T>*>(batch.state);
+  const double h = batch.settings->time_step;
+  list_powers(batch, is_active, work);
+  batch.calls->power(work.power_count * Work<T>::kLanes, reinterpret_cast<const double*>(work.base),
+                     reinterpret_cast<const double*>(work.exponent), reinterpret_cast<double*>(work.power));
+  for (int c = 0; c < plan.contact_count; ++c) {
+    const ContactPlan& contact = plan.contact[c];
+    work.felt_impulse[c] = work.felt_loss[c] = zero;
+    const int number = work.first_power[c];
+    if (number < 0) continue;
+    const T start = state.compression[c], before = -gap_at(contact, work.contact[c], work.start_shift);
+    const T from = select(before < start, before, start);
+    const MeanForce<T> mean = mean_force(action.contact[c], state.impulse[contact.row] > zero, start, work.end[c], from,
+                                         work.power[number], work.power[number + 1], h);
+    const auto is_pushing = work.is_acting[c] & !(mean.force <= zero);
+    work.felt_impulse[c] = select(is_pushing, T(h) * mean.force, zero);
+    work.felt_loss[c] = select(is_pushing, T(h * h * batch.settings->theta) * mean.slope, zero);
+    const T* lever = work.contact[c].normal_lever;
+    for (int k = 0; k < contact.path_count; ++k) {
+      work.smooth_residual[contact.path[k]] += -work.felt_impulse[c] * lever[k];
+      for (int j = 0; j <= k; ++j)
+        work.iteration_matrix[contact.path[k]][contact.path[j]] += work.felt_loss[c] * lever[k] * lever[j];
+    }
+  }
+}
+
+}  // namespace erard::lanes
