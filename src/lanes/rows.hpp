@@ -32,9 +32,10 @@ int set_half(const Plan& plan, int r, Work<T>& work) noexcept {
   return last;
 }
 
-/// W, q and bounds of all rows with friction, whether or not they are in play.
+/// W, q and bounds of all rows with friction, whether or not they are in play. A row once in play stays for the rest of the
+/// step.
 template <typename T>
-void assemble_problem(const Batch& batch, Work<T>& work) noexcept {
+void assemble_problem(const Batch& batch, const Mask<T>& is_wanted, Work<T>& work) noexcept {
   const Plan& plan = *batch.plan;
   const auto& action = *static_cast<const ActionNumbers<T>*>(batch.action);
   const int m = plan.friction_row_count;
@@ -54,7 +55,7 @@ void assemble_problem(const Batch& batch, Work<T>& work) noexcept {
       const int c = plan.friction_row[r].contact;
       work.q[r] = along(plan.contact[c], work.contact[c].tangent_lever, free_velocity);
       work.bound[r] = action.contact[c].friction * work.felt_impulse[c];
-      work.is_in_play[r] = select(work.felt_impulse[c] > T(0.0), T(1.0), T(0.0));
+      work.is_in_play[r] = select(is_wanted & (work.felt_impulse[c] > T(0.0)), T(1.0), work.is_in_play[r]);
     } else {
       work.q[r] = free_velocity[plan.friction_row[r].coordinate];
       work.bound[r] = action.body[plan.friction_row[r].coordinate].dry * T(batch.settings->time_step);
@@ -79,7 +80,7 @@ void sweep_rows(const Batch& batch, const Mask<T>& is_wanted, Sweeps& sweeps, Wo
   for (int i = 0; i < n; ++i) work.change[i] = plan.body[i].is_fixed ? T(0.0) : -work.smooth_residual[i];
   solve_upwards(plan, work, n - 1, work.change);
   solve_downwards(plan, work, work.change);
-  assemble_problem(batch, work);
+  assemble_problem(batch, is_wanted, work);
 
   bool wanted[kMaxLanes];
   is_wanted.store_unaligned(wanted);

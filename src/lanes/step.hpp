@@ -22,6 +22,7 @@ void predict(const Batch& batch, Work<T>& work) noexcept {
     work.placed_velocity[i] = work.placed_position[i] = work.placed_rate[i] = T(0.0);
   }
   for (int k = 0; k < plan.row_count; ++k) work.guess[k] = T(h) / state.time_step * state.impulse[k];
+  for (int r = 0; r < plan.friction_row_count; ++r) work.is_in_play[r] = T(0.0);
 }
 
 template <typename T>
