@@ -111,6 +111,8 @@ struct DriveNumbers {
 struct Settings {
   double time_step, theta, surprise_limit, newton_tolerance, placement_tolerance;
   bool is_friction_recalled;
+  int sweep_limit;
+  double sweep_tolerance;
   Push push;
 };
 
@@ -123,22 +125,8 @@ struct Outcome {
   double newton_change[kMaxLanes], surprise[kMaxLanes], sweep_error[kMaxLanes], finger_force[kMaxLanes];
 };
 
-/// One-step problems of a batch: element (i, j) of lane l at W[(i * size + j) * lanes + l].
-struct SweepTask {
-  const Plan* plan;
-  int lanes, size;                // rows with friction, in play or not
-  const bool* is_wanted;          // of each lane
-  const double *W, *q, *bound;    // bound: largest impulse [N s], [N m s]
-  const double* is_in_play;       // of each row and lane, 0 or 1
-  double* impulse;                // in: last known, out: solution; 0 out of play
-  int* sweeps;                    // added to, of each lane
-  double* error;                  // of each lane
-  bool* is_converged;             // of each lane
-};
-
 /// What the lanes leave to code that handles one number at a time: with it their bits are those of the scalar engine.
 struct Calls {
-  const void* scheme;
   /// cosine, sine of count rows of angles, in the lanes wanted
   void (*turn)(int count, int lanes, const bool* is_wanted, const double* angle, double* cosine, double* sine) noexcept;
   /// base^exponent where base > 0, else 0
@@ -146,7 +134,6 @@ struct Calls {
   /// compression of a felt left alone, where it was > 0, else 0
   void (*relax)(int count, double time, const double* stiffness, const double* exponent, const double* damping,
                 const double* compression, double* left) noexcept;
-  void (*sweep)(const void* scheme, const SweepTask& task) noexcept;
 };
 
 /// All of one step of a batch. Numbers of lane l stand at [l] of each T.

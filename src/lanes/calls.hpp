@@ -2,11 +2,9 @@
 #pragma once
 
 #include "batch.hpp"
-#include "erard/solver/scheme.hpp"
 
 namespace erard::lanes {
 
-/// @param scheme  must outlive them
-Calls calls_of(const Scheme& scheme) noexcept;
+extern const Calls kCalls;
 
 }  // namespace erard::lanes

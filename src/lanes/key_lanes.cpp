@@ -31,6 +31,8 @@ struct LaneScheme {
                  s.newton_tolerance,
                  s.placement_tolerance,
                  s.is_friction_recalled,
+                 s.sweep_limit,
+                 s.sweep_tolerance,
                  drive == DriveKind::piston  ? lanes::Push::piston
                  : drive == DriveKind::force ? lanes::Push::force
                                              : lanes::Push::none} {}
@@ -127,7 +129,7 @@ void LanePlayer::Band::step_batch(std::span<Player* const> batch, const LaneSche
   }
   ++count.batches;
   const lanes::Outcome& outcome =
-      packing.step({passengers.data(), batch.size()}, scheme.settings, lanes::calls_of(scheme.scheme));
+      packing.step({passengers.data(), batch.size()}, scheme.settings, lanes::kCalls);
   for (std::size_t l = 0; l < batch.size(); ++l) {
     if (!outcome.is_taken[l] && !outcome.is_refused[l]) {
       step_alone(*batch[l], scheme, next[l]);

@@ -1,17 +1,10 @@
-// The one-step problem when friction starts or stops: solver/assemble_rows.hpp in lanes, operation by operation. The sweeps
-// themselves are those of solver/gauss_seidel.hpp, lane by lane.
+// The one-step problem when friction starts or stops: solver/assemble_rows.hpp in lanes, operation by operation. 
 #pragma once
 
 #include "friction.hpp"
+#include "sweeps.hpp"
 
 namespace erard::lanes {
-
-/// What the sweeps of a batch have cost so far.
-struct Sweeps {
-  int count[kMaxLanes] = {};
-  double error[kMaxLanes] = {};
-  bool is_converged[kMaxLanes] = {};
-};
 
 /// L^-T H of one row, the loads on fixed coordinates left out. @return the last coordinate that it may reach
 template <typename T>
@@ -49,17 +42,17 @@ void assemble_problem(const Batch& batch, const Mask<T>& is_wanted, Work<T>& wor
     for (int j = 0; j < m; ++j) {
       T sum(0.0);
       for (int k = 0; k <= (last[r] < last[j] ? last[r] : last[j]); ++k) sum += left[k] * work.half[j][k];
-      work.W[r * m + j] = sum;
+      work.W[r][j] = sum;
     }
     if (plan.friction_row[r].contact >= 0) {
       const int c = plan.friction_row[r].contact;
       work.q[r] = along(plan.contact[c], work.contact[c].tangent_lever, free_velocity);
       work.bound[r] = action.contact[c].friction * work.felt_impulse[c];
-      work.is_in_play[r] = select(is_wanted & (work.felt_impulse[c] > T(0.0)), T(1.0), work.is_in_play[r]);
+      work.is_in_play[r] = work.is_in_play[r] | (is_wanted & (work.felt_impulse[c] > T(0.0)));
     } else {
       work.q[r] = free_velocity[plan.friction_row[r].coordinate];
       work.bound[r] = action.body[plan.friction_row[r].coordinate].dry * T(batch.settings->time_step);
-      work.is_in_play[r] = T(1.0);
+      work.is_in_play[r] = work.is_in_play[r] | is_wanted;
     }
     work.row_impulse[r] = work.guess[plan.friction_row[r].row];
   }
@@ -67,7 +60,7 @@ void assemble_problem(const Batch& batch, const Mask<T>& is_wanted, Work<T>& wor
 
 /// Impulses of the rows in play, from the last ones known, and the change of the end velocity with them, in some lanes.
 template <typename T>
-void sweep_rows(const Batch& batch, const Mask<T>& is_wanted, Sweeps& sweeps, Work<T>& work) noexcept {
+void sweep_rows(const Batch& batch, const Mask<T>& is_wanted, Sweeps<T>& sweeps, Work<T>& work) noexcept {
   const Plan& plan = *batch.plan;
   const int n = plan.body_count, m = plan.friction_row_count;
   T solved[kMaxBodies];  // of the lanes that need no sweeps
@@ -82,13 +75,7 @@ void sweep_rows(const Batch& batch, const Mask<T>& is_wanted, Sweeps& sweeps, Wo
   solve_downwards(plan, work, work.change);
   assemble_problem(batch, is_wanted, work);
 
-  bool wanted[kMaxLanes];
-  is_wanted.store_unaligned(wanted);
-  const auto numbers = [](T* of) { return reinterpret_cast<double*>(of); };
-  batch.calls->sweep(batch.calls->scheme,
-                     {&plan, Work<T>::kLanes, m, wanted, numbers(work.W), numbers(work.q), numbers(work.bound),
-                      numbers(work.is_in_play), numbers(work.row_impulse), sweeps.count, sweeps.error,
-                      sweeps.is_converged});
+  sweep(batch, is_wanted, sweeps, work);
   T gain[kMaxBodies];
   for (int i = 0; i < n; ++i) gain[i] = T(0.0);
   for (int r = 0; r < m; ++r) {

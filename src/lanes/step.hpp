@@ -22,7 +22,7 @@ void predict(const Batch& batch, Work<T>& work) noexcept {
     work.placed_velocity[i] = work.placed_position[i] = work.placed_rate[i] = T(0.0);
   }
   for (int k = 0; k < plan.row_count; ++k) work.guess[k] = T(h) / state.time_step * state.impulse[k];
-  for (int r = 0; r < plan.friction_row_count; ++r) work.is_in_play[r] = T(0.0);
+  for (int r = 0; r < plan.friction_row_count; ++r) work.is_in_play[r] = Mask<T>(false);
 }
 
 template <typename T>
@@ -81,20 +81,23 @@ void keep(const Plan& plan, const Mask<T>& which, Work<T>& work) noexcept {
 
 /// Writes down how the lanes that end here got there.
 template <typename T>
-void report(const Mask<T>& ends, const Mask<T>& is_sliding, int count, const T& change, const Sweeps& sweeps,
+void report(const Mask<T>& ends, const Mask<T>& is_sliding, int count, const T& change, const Sweeps<T>& sweeps,
             Outcome& outcome, bool* is_converged) noexcept {
-  bool ended[kMaxLanes], slid[kMaxLanes];
-  alignas(64) double changes[kMaxLanes];
+  bool ended[kMaxLanes], slid[kMaxLanes], converged[kMaxLanes];
+  double changes[kMaxLanes], errors[kMaxLanes], counts[kMaxLanes];
   ends.store_unaligned(ended);
   is_sliding.store_unaligned(slid);
-  change.store_aligned(changes);
+  sweeps.is_converged.store_unaligned(converged);
+  change.store_unaligned(changes);
+  sweeps.error.store_unaligned(errors);
+  sweeps.count.store_unaligned(counts);
   for (int l = 0; l < Work<T>::kLanes; ++l) {
     if (!ended[l]) continue;
     outcome.linearisations[l] = count;
-    outcome.sweeps[l] = sweeps.count[l];
+    outcome.sweeps[l] = static_cast<int>(counts[l]);
     outcome.newton_change[l] = changes[l];
-    outcome.sweep_error[l] = slid[l] ? 0 : sweeps.error[l];
-    is_converged[l] = slid[l] || sweeps.is_converged[l];
+    outcome.sweep_error[l] = slid[l] ? 0 : errors[l];
+    is_converged[l] = slid[l] || converged[l];
   }
 }
 
@@ -105,7 +108,7 @@ Mask<T> find_end(const Batch& batch, Work<T>& work) noexcept {
   const Settings& settings = *batch.settings;
   Outcome& outcome = *batch.outcome;
   bool is_converged[kMaxLanes] = {};
-  Sweeps sweeps;
+  Sweeps<T> sweeps;
   Mask<T> is_active = Mask<T>::load_unaligned(batch.is_used), is_done(false);
   predict(batch, work);
   place_middle(batch, is_active, work);

@@ -78,8 +78,10 @@ struct Work {
   T load[kMaxBodies];
 
   // one-step problem
-  T half[kMaxFrictionRows][kMaxBodies], row_impulse[kMaxFrictionRows], W[kMaxFrictionRows * kMaxFrictionRows];
-  T q[kMaxFrictionRows], bound[kMaxFrictionRows], is_in_play[kMaxFrictionRows];
+  T half[kMaxFrictionRows][kMaxBodies], row_impulse[kMaxFrictionRows];
+  T W[kMaxFrictionRows][kMaxFrictionRows];
+  T q[kMaxFrictionRows], bound[kMaxFrictionRows];
+  Mask<T> is_in_play[kMaxFrictionRows];
 
   // of the lanes that are done
   T done_velocity[kMaxBodies], done_shift[kMaxBodies], done_guess[2 * kMaxContacts + kMaxBodies], done_finger;
