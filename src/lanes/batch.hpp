@@ -122,6 +122,7 @@ struct Outcome {
   bool is_refused[kMaxLanes];  // by the surprise limit
   int linearisations[kMaxLanes];
   int sweeps[kMaxLanes];
+  unsigned tangents[kMaxLanes];  // bit by bit, in play in the last sweeps; 0 where there were none
   double newton_change[kMaxLanes], surprise[kMaxLanes], sweep_error[kMaxLanes], finger_force[kMaxLanes];
 };
 

@@ -40,10 +40,13 @@ struct LaneScheme {
   lanes::Settings settings;
 };
 
-/// What a step was like, from cheap to dear: lanes wait for the slowest of a batch, so those alike go together.
-constexpr int kEfforts = 8;
-int effort_of(const StepReport& stepped) noexcept {
-  return 2 * std::min(stepped.linearisations - 1, 3) + (stepped.sweeps > 0 ? 1 : 0);
+/// What a step was like: lanes wait for the slowest of a batch, and are swept together where the same rows are in play, so
+/// keys whose last steps were alike go together.
+constexpr int kTangents = 8;  // patterns told apart: those of the first three
+constexpr int kEfforts = 2 * (1 + kTangents);
+int effort_of(const StepReport& stepped, unsigned tangents) noexcept {
+  const int swept = stepped.sweeps > 0 ? 1 + static_cast<int>(tangents % kTangents) : 0;
+  return 2 * swept + (stepped.linearisations > 1 ? 1 : 0);
 }
 
 }  // namespace
@@ -148,6 +151,7 @@ void LanePlayer::Band::step_batch(std::span<Player* const> batch, const LaneSche
       state.time += scheme.scheme.time_step;
     }
     ++count.in_lanes;
+    effort[batch[l]->turn->key] = effort_of(stepped, outcome.tangents[l]);
     enter(*batch[l], next[l], stepped);
   }
 }
@@ -159,7 +163,6 @@ void LanePlayer::Band::step_alone(Player& player, const LaneScheme& scheme, cons
 
 void LanePlayer::Band::enter(Player& player, const Drive& next, const StepReport& stepped) noexcept {
   Turn& turn = *player.turn;
-  effort[turn.key] = effort_of(stepped);
   player.is_refused = stepped.status == StepStatus::refused;
   if (enter_step(player.mechanism(mechanisms), next, *turn.state, stepped, player.drive, turn.report))
     observer(context, turn.key, *turn.state, stepped, turn.report.force);

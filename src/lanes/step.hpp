@@ -95,6 +95,7 @@ void report(const Mask<T>& ends, const Mask<T>& is_sliding, int count, const T& 
     if (!ended[l]) continue;
     outcome.linearisations[l] = count;
     outcome.sweeps[l] = static_cast<int>(counts[l]);
+    outcome.tangents[l] = sweeps.tangents[l];
     outcome.newton_change[l] = changes[l];
     outcome.sweep_error[l] = slid[l] ? 0 : errors[l];
     is_converged[l] = slid[l] || converged[l];

@@ -10,6 +10,7 @@ template <typename T>
 struct Sweeps {
   T count = T(0.0), error = T(0.0);  // error: of the last ones
   Mask<T> is_converged = Mask<T>(false);
+  unsigned tangents[kMaxLanes] = {};  // in play in the last ones
 };
 
 /// Rows in play of some lanes, the same in all of them.
@@ -151,13 +152,18 @@ void sweep(const Batch& batch, const Mask<T>& is_wanted, Sweeps<T>& sweeps, Work
     int first = 0;
     while (!lanes[first]) ++first;
     RowsInPlay rows;
+    unsigned tangents = 0;
     Mask<T> is_alike = is_left;
     for (int r = 0; r < size; ++r) {
       work.is_in_play[r].store_unaligned(in_play);
       if (in_play[first]) rows.row[rows.count++] = r;
+      if (in_play[first] && batch.plan->friction_row[r].contact >= 0) tangents |= 1u << r;
       is_alike = is_alike & (in_play[first] ? work.is_in_play[r] : !work.is_in_play[r]);
     }
     sweep_alike(batch, rows, is_alike, sweeps, work);
+    is_alike.store_unaligned(lanes);
+    for (int l = 0; l < Work<T>::kLanes; ++l)
+      if (lanes[l]) sweeps.tangents[l] = tangents;
     is_left = is_left & !is_alike;
   }
 }
