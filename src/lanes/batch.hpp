@@ -3,6 +3,7 @@
 #pragma once
 
 #include "erard/model/capacity.hpp"
+#include "tables.hpp"
 
 namespace erard::lanes {
 
@@ -128,13 +129,11 @@ struct Outcome {
 
 /// What the lanes leave to code that handles one number at a time: with it their bits are those of the scalar engine.
 struct Calls {
-  /// cosine, sine of count rows of angles, in the lanes wanted
-  void (*turn)(int count, int lanes, const bool* is_wanted, const double* angle, double* cosine, double* sine) noexcept;
-  /// base^exponent where base > 0, else 0
-  void (*power)(int count, const double* base, const double* exponent, double* result) noexcept;
-  /// compression of a felt left alone, where it was > 0, else 0
-  void (*relax)(int count, double time, const double* stiffness, const double* exponent, const double* damping,
-                const double* compression, double* left) noexcept;
+  const Tables* tables;
+  double (*power)(double base, double exponent) noexcept;
+  void (*turn)(double angle, double* cosine, double* sine) noexcept;
+  /// Compression of a felt that is left alone for a while.
+  double (*relax)(double time, double stiffness, double exponent, double damping, double compression) noexcept;
 };
 
 /// All of one step of a batch. Numbers of lane l stand at [l] of each T.

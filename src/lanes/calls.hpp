@@ -5,6 +5,6 @@
 
 namespace erard::lanes {
 
-extern const Calls kCalls;
+const Calls& calls() noexcept;
 
 }  // namespace erard::lanes

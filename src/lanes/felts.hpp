@@ -2,7 +2,7 @@
 // their powers are taken one by one, of those that are wanted alone.
 #pragma once
 
-#include "work.hpp"
+#include "functions.hpp"
 
 namespace erard::lanes {
 
@@ -25,9 +25,25 @@ Mask<T> is_short(const T& start, const T& end, const T& middle) noexcept {
   return (abs(end - start) <= T(1e-3) * middle) & (start > T(0.0)) & (end > T(0.0));
 }
 
-/// First pass: which felts act, and what their laws raise to a power.
+/// Adds the numbers > 0 among base to those that are raised to a power.
 template <typename T>
-void list_powers(const Batch& batch, const Mask<T>& is_active, Work<T>& work) noexcept {
+void list_powers(const T& base, const T& exponent, T* result, Work<T>& work) noexcept {
+  double bases[kMaxLanes], exponents[kMaxLanes];
+  base.store_unaligned(bases);
+  exponent.store_unaligned(exponents);
+  const int place = static_cast<int>(reinterpret_cast<double*>(result) - reinterpret_cast<double*>(work.raised));
+  *result = T(0.0);
+  for (int l = 0; l < Work<T>::kLanes; ++l) {
+    work.base[work.power_count] = bases[l];
+    work.exponent[work.power_count] = exponents[l];
+    work.power_of[work.power_count] = place + l;
+    work.power_count += bases[l] > 0;
+  }
+}
+
+/// First pass: which felts act, and the powers of their compressions.
+template <typename T>
+void find_powers(const Batch& batch, const Mask<T>& is_active, Work<T>& work) noexcept {
   const T zero(0.0);
   const Plan& plan = *batch.plan;
   const auto& action = *static_cast<const ActionNumbers<T>*>(batch.action);
@@ -36,20 +52,23 @@ void list_powers(const Batch& batch, const Mask<T>& is_active, Work<T>& work) no
   for (int c = 0; c < plan.contact_count; ++c) {
     const ContactPlan& contact = plan.contact[c];
     const T start = state.compression[c], end = -gap_at(contact, work.contact[c], work.end_shift);
-    const auto was_closed = state.impulse[contact.row] > zero;
+    const Mask<T> was_closed = state.impulse[contact.row] > zero;
     // one that arrives gives nothing until it is compressed further than it was
-    const auto is_acting = is_active & !((start <= zero) & (end <= zero)) & (was_closed | !((end <= start) | (end <= zero)));
+    const Mask<T> is_acting =
+        is_active & !((start <= zero) & (end <= zero)) & (was_closed | !((end <= start) | (end <= zero)));
     work.end[c] = end;
     work.is_acting[c] = is_acting;
-    work.first_power[c] = -1;
-    if (none(is_acting)) continue;
+    work.acts[c] = any(is_acting);
+    if (!work.acts[c]) continue;
     const T d0 = larger(start, zero), d1 = larger(end, zero), middle = T(0.5) * (d0 + d1);
-    const auto is_at_middle = was_closed & is_short(start, end, middle);
-    work.first_power[c] = work.power_count;
-    work.base[work.power_count] = select(is_acting, select(is_at_middle, middle, d1), zero);
-    work.base[work.power_count + 1] = select(is_acting & !is_at_middle, d0, zero);
-    for (int i = 0; i < 2; ++i) work.exponent[work.power_count++] = action.contact[c].exponent;
+    const Mask<T> is_at_middle = was_closed & is_short(start, end, middle);
+    const T exponent = action.contact[c].exponent;
+    list_powers(select(is_acting, select(is_at_middle, middle, d1), zero), exponent, &work.raised[2 * c], work);
+    list_powers(select(is_acting & !is_at_middle, d0, zero), exponent, &work.raised[2 * c + 1], work);
   }
+  raise<T>(*batch.calls, work.power_count, work.base, work.exponent, work.power);
+  double* const results = reinterpret_cast<double*>(work.raised);
+  for (int i = 0; i < work.power_count; ++i) results[work.power_of[i]] = work.power[i];
 }
 
 template <typename T>
@@ -87,18 +106,15 @@ void add_massless_felts(const Batch& batch, const Mask<T>& is_active, Work<T>& w
   const auto& action = *static_cast<const ActionNumbers<T>*>(batch.action);
   const auto& state = *static_cast<const StateNumbers<T>*>(batch.state);
   const double h = batch.settings->time_step;
-  list_powers(batch, is_active, work);
-  batch.calls->power(work.power_count * Work<T>::kLanes, reinterpret_cast<const double*>(work.base),
-                     reinterpret_cast<const double*>(work.exponent), reinterpret_cast<double*>(work.power));
+  find_powers(batch, is_active, work);
   for (int c = 0; c < plan.contact_count; ++c) {
     const ContactPlan& contact = plan.contact[c];
     work.felt_impulse[c] = work.felt_loss[c] = zero;
-    const int number = work.first_power[c];
-    if (number < 0) continue;
+    if (!work.acts[c]) continue;
     const T start = state.compression[c], before = -gap_at(contact, work.contact[c], work.start_shift);
     const T from = select(before < start, before, start);
     const MeanForce<T> mean = mean_force(action.contact[c], state.impulse[contact.row] > zero, start, work.end[c], from,
-                                         work.power[number], work.power[number + 1], h);
+                                         work.raised[2 * c], work.raised[2 * c + 1], h);
     const auto is_pushing = work.is_acting[c] & !(mean.force <= zero);
     work.felt_impulse[c] = select(is_pushing, T(h) * mean.force, zero);
     work.felt_loss[c] = select(is_pushing, T(h * h * batch.settings->theta) * mean.slope, zero);

@@ -2,7 +2,7 @@
 // operation.
 #pragma once
 
-#include "work.hpp"
+#include "functions.hpp"
 
 namespace erard::lanes {
 
@@ -30,10 +30,7 @@ void place_bodies(const Batch& batch, const Mask<T>& is_moved, Work<T>& work) no
     const T carried = body.parent < 0 ? T(0.0) : work.angle[body.parent];
     work.angle[i] = body.is_prismatic ? carried : carried + x[i];
   }
-  bool is_wanted[kMaxLanes];
-  is_moved.store_unaligned(is_wanted);
-  batch.calls->turn(plan.body_count, Work<T>::kLanes, is_wanted, reinterpret_cast<const double*>(work.angle),
-                    reinterpret_cast<double*>(work.cosine), reinterpret_cast<double*>(work.sine));
+  turn(*batch.calls, plan.body_count, is_moved, work.angle, work.cosine, work.sine);
   for (int i = 0; i < plan.body_count; ++i) {
     const BodyPlan& body = plan.body[i];
     work.origin[i] = placed(work, body.parent, action.body[i].origin);

@@ -22,7 +22,7 @@ int lanes_of(InstructionSet set) noexcept {
 
 bool is_available(InstructionSet set) noexcept {
   switch (set) {
-    case InstructionSet::avx2: return __builtin_cpu_supports("avx2");
+    case InstructionSet::avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case InstructionSet::avx512: return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
     default: return true;
   }

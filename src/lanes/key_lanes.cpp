@@ -4,7 +4,6 @@
 #include <array>
 #include <numeric>
 
-#include "calls.hpp"
 #include "packing.hpp"
 
 namespace erard {
@@ -132,7 +131,7 @@ void LanePlayer::Band::step_batch(std::span<Player* const> batch, const LaneSche
   }
   ++count.batches;
   const lanes::Outcome& outcome =
-      packing.step({passengers.data(), batch.size()}, scheme.settings, lanes::kCalls);
+      packing.step({passengers.data(), batch.size()}, scheme.settings);
   for (std::size_t l = 0; l < batch.size(); ++l) {
     if (!outcome.is_taken[l] && !outcome.is_refused[l]) {
       step_alone(*batch[l], scheme, next[l]);

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "calls.hpp"
+
 namespace erard::lanes {
 namespace {
 
@@ -33,6 +35,7 @@ void each_number(const Plan& plan, AnyState& state, Visit&& visit) noexcept {
 
 Packing::Packing(std::span<const Mechanism> mechanisms, const Kernel& kernel)
     : kernel_(kernel),
+      calls_(calls()),
       action_(kCount<ActionNumbers<double>> * kMaxLanes),
       state_(kCount<StateNumbers<double>> * kMaxLanes),
       drive_(kCount<DriveNumbers<double>> * kMaxLanes),
@@ -91,14 +94,13 @@ void Packing::store(std::span<const Passenger> passengers, const Plan& plan) con
   }
 }
 
-const Outcome& Packing::step(std::span<const Passenger> passengers, const Settings& settings,
-                             const Calls& calls) noexcept {
+const Outcome& Packing::step(std::span<const Passenger> passengers, const Settings& settings) noexcept {
   const Plan& plan = plans_[plan_of_[passengers.front().model]];
   load_numbers(passengers, plan);
   load(passengers, plan);
   bool is_used[kMaxLanes] = {};
   for (std::size_t l = 0; l < passengers.size(); ++l) is_used[l] = passengers[l].is_driven_by_numbers;
-  kernel_.step({&plan, &settings, &calls, action_.data(), drive_.data(), state_.data(), is_used, &outcome_,
+  kernel_.step({&plan, &settings, &calls_, action_.data(), drive_.data(), state_.data(), is_used, &outcome_,
                 work_.data()});
   store(passengers, plan);
   return outcome_;

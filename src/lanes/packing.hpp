@@ -45,7 +45,7 @@ class Packing {
   int plan_count() const noexcept { return static_cast<int>(plans_.size()); }
 
   /// Steps up to kernel.lanes keys of one structure. The states of those taken are at the end of the step.
-  const Outcome& step(std::span<const Passenger> passengers, const Settings& settings, const Calls& calls) noexcept;
+  const Outcome& step(std::span<const Passenger> passengers, const Settings& settings) noexcept;
 
  private:
   void load_numbers(std::span<const Passenger> passengers, const Plan& plan) noexcept;
@@ -53,6 +53,7 @@ class Packing {
   void store(std::span<const Passenger> passengers, const Plan& plan) const noexcept;
 
   const Kernel& kernel_;
+  const Calls& calls_;
   std::vector<Plan> plans_;
   std::vector<int> plan_of_;                   // of each model
   std::vector<ActionNumbers<double>> numbers_;  // of each model

@@ -36,7 +36,7 @@ void update_velocity(const Batch& batch, Work<T>& work) noexcept {
     const ContactPlan& contact = plan.contact[c];
     T& guess = work.guess[contact.row];
     guess = zero;
-    if (work.first_power[c] < 0) continue;  // does not act
+    if (!work.acts[c]) continue;
     const T left =
         work.felt_impulse[c] - work.felt_loss[c] * along(contact, work.contact[c].normal_lever, work.change);
     guess = select((work.felt_impulse[c] > zero) & (zero < left), left, zero);
@@ -137,6 +137,21 @@ Mask<T> find_end(const Batch& batch, Work<T>& work) noexcept {
   return is_done & Mask<T>::load_unaligned(is_converged);
 }
 
+/// Compression of felts left alone for the step, in some lanes.
+template <typename T>
+T relaxed(const Batch& batch, const Mask<T>& which, const ContactNumbers<T>& felt, const T& compression) noexcept {
+  double stiffness[kMaxLanes], exponent[kMaxLanes], damping[kMaxLanes], left[kMaxLanes];
+  bool wanted[kMaxLanes];
+  which.store_unaligned(wanted);
+  felt.stiffness.store_unaligned(stiffness);
+  felt.exponent.store_unaligned(exponent);
+  felt.damping.store_unaligned(damping);
+  compression.store_unaligned(left);
+  for (int l = 0; l < Work<T>::kLanes; ++l)
+    left[l] = wanted[l] ? batch.calls->relax(batch.settings->time_step, stiffness[l], exponent[l], damping[l], left[l]) : 0;
+  return T::load_unaligned(left);
+}
+
 /// Compressions of the felts at the end of the step.
 template <typename T>
 void keep_felt_history(const Batch& batch, const Mask<T>& is_done, Work<T>& work) noexcept {
@@ -146,14 +161,7 @@ void keep_felt_history(const Batch& batch, const Mask<T>& is_done, Work<T>& work
   auto& state = *static_cast<StateNumbers<T>*>(batch.state);
   for (int c = 0; c < plan.contact_count; ++c) {
     const auto is_left = is_done & (work.done_guess[plan.contact[c].row] <= zero) & (state.compression[c] > zero);
-    T left = zero;
-    if (any(is_left)) {
-      const T start = select(is_left, state.compression[c], zero);
-      const ContactNumbers<T>& felt = action.contact[c];
-      batch.calls->relax(Work<T>::kLanes, batch.settings->time_step, reinterpret_cast<const double*>(&felt.stiffness),
-                         reinterpret_cast<const double*>(&felt.exponent), reinterpret_cast<const double*>(&felt.damping),
-                         reinterpret_cast<const double*>(&start), reinterpret_cast<double*>(&left));
-    }
+    const T left = any(is_left) ? relaxed(batch, is_left, action.contact[c], state.compression[c]) : zero;
     const T overlap = -gap_at(plan.contact[c], work.contact[c], work.done_shift);
     const auto is_open = (work.done_guess[plan.contact[c].row] <= zero) & (state.compression[c] <= zero);
     state.compression[c] = select(is_open, state.compression[c], larger(larger(overlap, left), zero));

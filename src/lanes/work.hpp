@@ -41,6 +41,8 @@ Vector<T> perp(const Vector<T>& a) noexcept {
   return {-a.y, a.x};
 }
 
+inline constexpr int kMaxPowers = 2 * kMaxContacts * kMaxLanes;
+
 template <typename T>
 struct PlacedContact {
   T gap;
@@ -66,12 +68,14 @@ struct Work {
   T factor[kMaxBodies][kMaxBodies], change[kMaxBodies];
   T guess[2 * kMaxContacts + kMaxBodies];
 
-  // felts: what they are raised to a power of, all of a linearisation together
+  // felts: the numbers that a linearisation raises to a power, side by side whatever their contact and lane
   int power_count;
-  T base[2 * kMaxContacts], exponent[2 * kMaxContacts], power[2 * kMaxContacts];
+  double base[kMaxPowers + kMaxLanes], exponent[kMaxPowers + kMaxLanes], power[kMaxPowers + kMaxLanes];
+  int power_of[kMaxPowers];  // of each its place among the numbers of `raised`
+  T raised[2 * kMaxContacts];  // of each contact the power of its compression at the end, or the middle; then at the start
   T end[kMaxContacts];
   Mask<T> is_acting[kMaxContacts];
-  int first_power[kMaxContacts];  // of each contact, or -1: acts in no lane
+  bool acts[kMaxContacts];  // in any lane
 
   // friction of the step before
   Mask<T> is_out[kMaxBodies];
