@@ -21,6 +21,11 @@ if(ERARD_BUILD_LINK)
   install(FILES ${ERARD_MESSAGE_FILES} DESTINATION "${CMAKE_INSTALL_DATADIR}/erard/messages")
 endif()
 
+if(ERARD_BUILD_LANES)
+  install(TARGETS erard_lanes EXPORT erardLanesTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT erardLanesTargets NAMESPACE erard:: DESTINATION "${package_dir}")
+endif()
+
 if(ERARD_BUILD_SPARSE)
   install(TARGETS erard_sparse EXPORT erardSparseTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(EXPORT erardSparseTargets NAMESPACE erard:: DESTINATION "${package_dir}")
