@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <thread>
 #include <vector>
 
 #include "erard/device/periodic_loop.hpp"
@@ -203,6 +204,32 @@ TEST(PeriodicLoop, StopsAfterThePeriodUnderWay) {
   });
   EXPECT_EQ(summary.status.periods, 5);
   EXPECT_EQ(loop.status().periods, 5);
+}
+
+TEST(PeriodicLoop, IsReadByOthersWhileItRuns) {
+  // under the thread sanitizer this is about more than the sums
+  FakeTime time;
+  Loop loop({}, FakeClock{&time});
+  std::thread reader([&] {
+    std::int64_t last = 0;
+    for (int i = 0; i < 200; ++i) {
+      const LoopStatus status = loop.status();
+      EXPECT_GE(status.periods, last);
+      EXPECT_EQ(status.missed, status.periods / 2);  // every other one, below
+      EXPECT_GE(loop.work_time().total(), last);
+      last = status.periods;
+    }
+    loop.stop();
+  });
+  const LoopSummary summary = loop.run([&](const Period&) noexcept {
+    const bool is_long = loop.status().periods % 2 == 1;
+    time.work(is_long ? kT + 1 : kWork, kWork);
+    std::this_thread::yield();
+    return true;
+  });
+  reader.join();
+  EXPECT_EQ(loop.status().periods, summary.status.periods);
+  EXPECT_EQ(loop.wake_lateness().total(), summary.status.periods);
 }
 
 TEST(PeriodicLoop, ShiftsItsGridFromTheNextPeriodOn) {
