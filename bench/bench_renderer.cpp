@@ -1,4 +1,4 @@
-// What the pipeline between position message and force costs, takes, and withstands. Writes the tables of docs/device.md:
+// What the pipeline between position message and force costs and withstands. Writes the tables of docs/device.md:
 //   build/release/bin/bench_renderer
 #include <fmt/format.h>
 
@@ -127,7 +127,7 @@ struct LeverCase {
   bool is_adaptive;   // adaptive line and 5 um of noise, else a backward difference and none
 };
 
-/// Fastest motion of the last 0.5 s of a lever without friction that is pressed onto the key bottom by a constant force.
+/// Fastest motion of the last 0.5 s of a lever without friction, pressed onto the key bottom by a constant force.
 double fastest_at_the_end(const LeverCase& c, bool is_on) {
   constexpr double T = 5e-4, h = T / 20;
   RenderSettings settings = settings_of_file();

@@ -152,8 +152,8 @@ TEST(PassivityOfTheDevice, NoiseOfTheSensorOnAKeyHeldDownIsNoGeneratedEnergy) {
   EXPECT_EQ(acted, 0);
 }
 
-/// A lever of 60 g, without damping or friction, pressed onto the key bottom by a constant force that grows to 10 N within
-/// 0.2 s; what the renderer asks for acts one period later and is held for a period.
+/// A lever of 60 g, without damping or friction, pressed onto the key bottom by a force that grows to 10 N within 0.2 s
+/// and stays; what the renderer asks for acts one period later and is held for a period.
 struct Lever {
   double position = 0, rate = 0, fastest = 0;  // fastest: of the last second
   bool has_acted = false;

@@ -201,8 +201,9 @@ class Renderer {
     key.given += 0.5 * (key.force + force) * (y - key.y);
     key.force = force;
     key.y = y;
-    if (key.hammer.observe(mechanism, roles_, state))
-      blow_[static_cast<std::size_t>(blow_count_++ % size())] = {k, state.time, key.hammer.speed()};
+    // the lock-out is longer than a period: never more than one a key
+    if (key.hammer.observe(mechanism, roles_, state) && blow_count_ < size())
+      blow_[static_cast<std::size_t>(blow_count_++)] = {k, state.time, key.hammer.speed()};
   }
 
   /// Force of one key on its way out.
