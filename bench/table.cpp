@@ -62,6 +62,45 @@ std::string all_lines(const std::vector<Row>& rows, std::string (*rest_of)(const
   return text;
 }
 
+std::string circumstance_lines(const Results& results) {
+  const Circumstances& c = results.circumstances;
+  const std::pair<const char*, std::string> lines[] = {
+      {"commit", c.commit},
+      {"compiler", c.compiler},
+      {"machine", fmt::format("{}, {}", c.cpu, c.kernel)},
+      {"scheduling", c.scheduling},
+      {"clock", fmt::format("{:.0f} ns a look, subtracted", 1e9 * c.clock_overhead)},
+      {"peer", c.peer.empty() ? "not installed" : c.peer},
+      {"damper", results.has_damper ? "on" : "off"},
+      {"memory", memory_of_an_action()}};
+  std::string text;
+  for (const auto& [name, value] : lines) text += fmt::format("{:<12} {}\n", name, value);
+  return text;
+}
+
+std::string tick_lines(const std::vector<Row>& rows) {
+  return fmt::format(
+      "\n{:{}}one period of all keys, a tick [us]\n{}{}{}\n{}"
+      "noise: its p99.9 in this row; asleep: keys that are left alone, on average; thr: threads; n: internal steps a\n"
+      "period; % of T: p99.9 of the tick (<: its maximum, for want of samples) as a share of the period; -: not "
+      "measured,\n"
+      "or too few samples to tell\n",
+      "", kEntrant, entrant_head(), times_head(), all_lines(rows, times_of), noise_line(rows));
+}
+
+/// Those rows alone that have something to tell.
+std::string step_lines(std::vector<Row> rows) {
+  std::erase_if(rows, [](const Row& row) { return row.step.count == 0 && row.undisturbed.count == 0; });
+  if (rows.empty()) return {};
+  return fmt::format(
+      "\n{:{}}{:>16}{:>26}{:>16}{:>16}{:>18}\n{}{}{}"
+      "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
+      "steps\n"
+      "of the same engine\n",
+      "", kEntrant, "one step [us]", "undisturbed tick [us]", "a step", "error of force", "times the peer",
+      entrant_head(), work_head(), all_lines(rows, work_of));
+}
+
 std::string thesis_lines(const std::vector<Row>& rows) {
   const std::vector<ThesisLine> lines = beside_thesis(rows);
   if (lines.empty()) return {};
@@ -116,37 +155,14 @@ std::string memory_of_an_action() {
 }
 
 std::string table(const Results& results) {
-  std::string text;
-  const Circumstances& c = results.circumstances;
-  const std::pair<const char*, std::string> lines[] = {
-      {"commit", c.commit},
-      {"compiler", c.compiler},
-      {"machine", fmt::format("{}, {}", c.cpu, c.kernel)},
-      {"scheduling", c.scheduling},
-      {"clock", fmt::format("{:.0f} ns a look, subtracted", 1e9 * c.clock_overhead)},
-      {"peer", c.peer.empty() ? "not installed" : c.peer},
-      {"damper", results.has_damper ? "on" : "off"},
-      {"memory", memory_of_an_action()}};
-  for (const auto& [name, value] : lines) text += fmt::format("{:<12} {}\n", name, value);
-  text += fmt::format("\n{:{}}one period of all keys, a tick [us]\n{}{}", "", kEntrant, entrant_head(), times_head());
-  text += all_lines(results.rows, times_of);
-  text += fmt::format("\n{}", noise_line(results.rows));
-  text +=
-      "noise: its p99.9 in this row; asleep: keys that are left alone, on average; thr: threads; n: internal steps a "
-      "period; % of T: p99.9 of the tick (<: its maximum, for want of samples) as a share of the "
-      "period;\n-: not measured, or too few samples to tell\n";
-  text +=
-      fmt::format("\n{:{}}{:>16}{:>26}{:>16}{:>16}{:>18}\n{}{}", "", kEntrant, "one step [us]", "undisturbed tick [us]",
-                  "a step", "error of force", "times the peer", entrant_head(), work_head());
-  std::vector<Row> told = results.rows;
-  std::erase_if(told, [](const Row& row) { return row.step.count == 0 && row.undisturbed.count == 0; });
-  text += all_lines(told, work_of);
-  text +=
-      "undisturbed: each tick of the scene at its fastest of all passes; eta, RMS: up to the release, against 5 us "
-      "steps of the same engine\n";
-  text += fmt::format("\n{}", resting_line(results.rows));
-  text += thesis_lines(results.rows);
-  text += target_lines(results.rows);
+  std::string text = circumstance_lines(results);
+  if (!results.rows.empty()) {
+    text += tick_lines(results.rows);
+    text += step_lines(results.rows);
+    text += fmt::format("\n{}", resting_line(results.rows));
+    text += thesis_lines(results.rows);
+    text += target_lines(results.rows);
+  }
 #ifndef __OPTIMIZE__
   text += "NOTE: built without optimisation, these are not the engine's times\n";
 #endif
