@@ -1,8 +1,10 @@
 // erard-bench: does this machine hold the keys at the rate, and with what margin.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -15,6 +17,7 @@
 
 #include "bench/contender.hpp"
 #include "bench/harness.hpp"
+#include "bench/lanes.hpp"
 #include "bench/markdown_block.hpp"
 #include "bench/results.hpp"
 #include "erard/device/error.hpp"
@@ -33,7 +36,7 @@ std::atomic<bool> is_interrupted{false};
 
 struct Options {
   bench::Request request;
-  std::string setting = "both", sleep = "on", damper = "on", csv, json, markdown;
+  std::string lanes = "auto", setting = "both", sleep = "on", damper = "on", csv, json, markdown;
   std::optional<double> margin;
   bool is_real_time = false;
 };
@@ -68,6 +71,12 @@ void add_options(CLI::App& app, Options& o) {
                  "share the keys of a keyboard out to that many threads, each on a CPU of its own")
       ->check(CLI::Range(1, kMostThreads))
       ->capture_default_str();
+  app.add_option(
+         "--lanes", o.lanes,
+         "keys of a keyboard on one thread go together in the lanes of vector registers: auto (the widest of this "
+         "CPU; off on more threads), sse2, avx2, avx512, off")
+      ->check(CLI::IsMember({"auto", "sse2", "avx2", "avx512", "off"}))
+      ->capture_default_str();
   app.add_option("--repeat", o.request.repeat, "measure that many times as long, 1 to 100: p99.99 takes 100000 periods")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
@@ -89,6 +98,19 @@ void add_options(CLI::App& app, Options& o) {
       "docs/performance.md (default: none)");
 }
 
+/// Lanes that are meant. Throws InputError when this CPU, or this build, has not got them.
+std::string lanes_of(const Options& o) {
+  const std::vector<std::string> names = bench::lane_names();
+  if (o.lanes == "auto") return names.empty() ? "off" : names.back();
+  if (o.lanes == "off") return o.lanes;
+  if (std::find(names.begin(), names.end(), o.lanes) == names.end())
+    throw InputError(fmt::format("--lanes {}: this CPU and this build have {}", o.lanes,
+                                 names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  if (o.request.threads > 1)
+    throw InputError(fmt::format("--lanes {} with --threads {}: lanes are for one thread", o.lanes, o.request.threads));
+  return o.lanes;
+}
+
 void check(Options& o) {
   o.request.cheapest = o.setting != "default";
   o.request.with_default = o.setting != "cheapest";
@@ -98,6 +120,7 @@ void check(Options& o) {
   if (o.margin && !(*o.margin > 0 && std::isfinite(*o.margin)))
     throw InputError(fmt::format("--margin = {}, must be a positive share of the period", *o.margin));
   o.request.may_sleep = o.sleep == "on";
+  o.request.lanes = lanes_of(o);
   const std::pair<const char*, const std::string*> files[] = {
       {"--csv", &o.csv}, {"--json", &o.json}, {"--markdown", &o.markdown}};
   for (const auto& [one, file] : files)

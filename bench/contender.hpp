@@ -74,6 +74,7 @@ struct Job {
   bool is_split = false;           // into shorter ones where the motion is not as guessed; the peer has no such steps
   bool may_sleep = false;          // keys of a keyboard that rest are left alone; the peer has nothing like that
   std::vector<int> worker_cpus{};  // of a keyboard: that many threads more, each on a CPU of its own; the peer has none
+  std::string lanes = "off";       // of a keyboard on one thread: one of lane_names(); of the peer: off
   FeltModel felts = FeltModel::massless;  // of the peer: always bodies
 };
 

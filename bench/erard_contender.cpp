@@ -1,4 +1,5 @@
 #include "bench/contender.hpp"
+#include "bench/lanes.hpp"
 #include "erard/device/key_pool.hpp"
 
 namespace erard::bench {
@@ -57,6 +58,7 @@ class Keys : public Contender {
       : model_(stage.mechanism(job.felts).model),
         settings_(settings_of(job)),
         worker_cpus_(job.worker_cpus),
+        lanes_name_(job.lanes),
         play_in_(std::lround(duration_of(*job.scene, stage) * job.rate_Hz)),
         parts_(cast(*job.scene, stage, job.keys)),
         inputs_(parts_.size()) {
@@ -65,7 +67,9 @@ class Keys : public Contender {
 
   void start() override {
     pool_.reset();
+    lanes_.reset();
     keyboard_ = std::make_unique<Keyboard>(model_, static_cast<int>(parts_.size()), settings_, sleep_);
+    if (lanes_name_ != "off") lanes_ = make_lanes(*keyboard_, lanes_name_);
     if (!worker_cpus_.empty()) pool_ = std::make_unique<KeyPool>(*keyboard_, worker_cpus_, kSpinTime);
     for (long i = 0; i < play_in_; ++i) {
       prepare();
@@ -79,6 +83,8 @@ class Keys : public Contender {
   void tick(StepClock) override {
     if (pool_)
       pool_->tick(inputs_);
+    else if (lanes_)
+      lanes_->tick(inputs_);
     else
       keyboard_->tick(inputs_);
   }
@@ -102,16 +108,17 @@ class Keys : public Contender {
   TickSettings settings_;
   SleepSettings sleep_;
   std::vector<int> worker_cpus_;
+  std::string lanes_name_;
   long play_in_;  // [ticks]
   std::vector<Part> parts_;
   std::vector<DriveSample> inputs_;
   std::unique_ptr<Keyboard> keyboard_;
   std::unique_ptr<KeyPool> pool_;
+  std::unique_ptr<Lanes> lanes_;
 };
 
 }  // namespace
 
-/// Whatever advances keys in another way is chosen here.
 std::unique_ptr<Contender> make_erard(const Stage& stage, const Job& job) {
   if (job.scene->is_keyboard) return std::make_unique<Keys>(stage, job);
   return std::make_unique<Stroke>(stage, job);

@@ -67,15 +67,12 @@ class MatchRun {
 
  private:
   Job job(const Entrant& entrant) const {
-    const auto workers = harness_.worker_cpus.begin();
-    return {match_.scene,
-            match_.keys,
-            match_.rate_Hz,
-            entrant.substeps,
-            entrant.is_split,
-            entrant.may_sleep,
-            std::vector<int>(workers, workers + (match_.threads - 1)),
-            entrant.felts};
+    Job job{match_.scene, match_.keys, match_.rate_Hz, entrant.substeps, entrant.is_split};
+    job.may_sleep = entrant.may_sleep;
+    job.worker_cpus.assign(harness_.worker_cpus.begin(), harness_.worker_cpus.begin() + (match_.threads - 1));
+    job.lanes = entrant.lanes;
+    job.felts = entrant.felts;
+    return job;
   }
 
   std::size_t least_ticks(const Entrant& entrant) const {
@@ -155,6 +152,7 @@ class MatchRun {
     row.threads = match_.threads;
     row.may_sleep = runner.entrant.may_sleep;
     row.felts = runner.entrant.felts;
+    row.lanes = runner.entrant.lanes;
     row.setting = runner.entrant.setting;
     row.substeps = runner.entrant.substeps;
     std::vector<double> fastest = fastest_of_passes(samples.ticks(), static_cast<std::size_t>(slice_));

@@ -74,15 +74,16 @@ std::string rates(const std::vector<Row>& rows) {
 std::string keyboards(const std::vector<Row>& rows) {
   return rows_as_table(
       rows, "Many keys, all of them in one period [us]:",
-      "| scene | keys | played | asleep | kHz | threads | setting | undisturbed: median | p99 | max | as measured: "
+      "| scene | keys | played | asleep | kHz | threads | lanes | setting | undisturbed: median | p99 | max | as "
+      "measured: "
       "median "
       "| p99.9 | times the peer |",
       [](const Row& row) { return row.keys > 1; },
       [](const Row& r) {
-        return fmt::format("| {} | {} | {} | {:.1f} | {:g} | {} | {} | {} | {} | {} | {} | {} | {} |", r.scene, r.keys,
-                           r.played, r.asleep, r.rate_Hz / 1000, r.threads, r.setting, us_cell(r.undisturbed.median),
-                           us_cell(r.undisturbed.p99), us_cell(r.undisturbed.max), us_cell(r.tick.median),
-                           tail_cell(r.tick), cell(r.times_peer_median, 2));
+        return fmt::format("| {} | {} | {} | {:.1f} | {:g} | {} | {} | {} | {} | {} | {} | {} | {} | {} |", r.scene,
+                           r.keys, r.played, r.asleep, r.rate_Hz / 1000, r.threads, r.lanes, r.setting,
+                           us_cell(r.undisturbed.median), us_cell(r.undisturbed.p99), us_cell(r.undisturbed.max),
+                           us_cell(r.tick.median), tail_cell(r.tick), cell(r.times_peer_median, 2));
       });
 }
 

@@ -49,7 +49,10 @@ Match match_of(const Scene& scene, int keys, double rate_Hz, const Request& requ
               scene.is_keyboard ? request.threads : 1,
               entrants_of(Engine::erard, request, rate_Hz),
               seconds_of(scene, rate_Hz, request)};
-  for (Entrant& entrant : match.entrants) entrant.may_sleep = scene.is_keyboard && request.may_sleep;
+  for (Entrant& entrant : match.entrants) {
+    entrant.may_sleep = scene.is_keyboard && request.may_sleep;
+    if (scene.is_keyboard && match.threads == 1) entrant.lanes = request.lanes;
+  }
   if (request.with_peers && match.threads == 1)
     for (const Entrant& peer : entrants_of(Engine::mujoco, request, rate_Hz)) match.entrants.push_back(peer);
   return match;

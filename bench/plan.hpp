@@ -20,6 +20,7 @@ struct Request {
   bool cheapest = true, with_default = true;  // settings
   bool may_sleep = true;                      // keys of a keyboard
   int threads = 1;                            // of a keyboard
+  std::string lanes = "off";                  // of a keyboard on one thread: one of lane_names()
   int cpus = 1;                               // that there are for them
   bool with_peers = false;
   int repeat = 1;
@@ -34,6 +35,7 @@ struct Entrant {
   bool is_split = false;   // of tick()'s default: at least so many steps
   bool may_sleep = false;  // keys that rest are left alone
   FeltModel felts = FeltModel::massless;
+  std::string lanes = "off";
 };
 
 /// Entrants that play the same scene at the same rate, in turn, slice by slice: what the machine does meanwhile meets

@@ -34,6 +34,7 @@ std::vector<Cell> cells_of(const Row& r) {
                           {"keys_played", {}, static_cast<double>(r.played)},
                           {"keys_asleep", {}, r.asleep},
                           {"threads", {}, static_cast<double>(r.threads)},
+                          {"lanes", r.lanes, 0, true},
                           {"felts", name_of(r.felts), 0, true},
                           {"rate_Hz", {}, r.rate_Hz},
                           {"setting", r.setting, 0, true},

@@ -20,6 +20,7 @@ struct Row {
   int threads = 1;
   bool may_sleep = false;  // keys that rest are left alone
   FeltModel felts = FeltModel::massless;
+  std::string lanes = "off";
   std::string setting;
   int substeps = 1;
   Distribution tick;         // one period of all keys

@@ -18,14 +18,14 @@ namespace {
 /// Which entrant: the first columns of both tables.
 std::string entrant_of(const Row& r) {
   const std::string scene = r.felts == FeltModel::massless ? r.scene : fmt::format("{} {}", r.scene, name_of(r.felts));
-  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>6.0f} {:<9}{:>3}", name_of(r.engine), scene, r.keys,
-                     cell(r.asleep, 1), r.threads, r.rate_Hz, r.setting, r.substeps);
+  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>7}{:>6.0f} {:<9}{:>3}", name_of(r.engine), scene, r.keys,
+                     cell(r.asleep, 1), r.threads, r.lanes, r.rate_Hz, r.setting, r.substeps);
 }
 std::string entrant_head() {
-  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>6} {:<9}{:>3}", "engine", "scene", "keys", "asleep", "thr", "Hz",
-                     "setting", "n");
+  return fmt::format("{:<7}{:<14}{:>4}{:>7}{:>4}{:>7}{:>6} {:<9}{:>3}", "engine", "scene", "keys", "asleep", "thr",
+                     "lanes", "Hz", "setting", "n");
 }
-constexpr int kEntrant = 54;  // characters of it
+constexpr int kEntrant = 61;  // characters of it
 
 std::string times_of(const Row& r) {
   const Distribution& t = r.tick;

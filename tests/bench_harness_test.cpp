@@ -11,6 +11,7 @@
 
 #include "bench/distribution.hpp"
 #include "bench/contender.hpp"
+#include "bench/lanes.hpp"
 #include "bench/least_work.hpp"
 #include "bench/plan.hpp"
 #include "bench/row.hpp"
@@ -161,6 +162,17 @@ TEST(Erard, OfManyKeysPlaysTheSameEveryTimeAndOnAnyNumberOfThreads) {
   EXPECT_EQ(force, play(*alone, 1200));
   EXPECT_EQ(force, play(*make_erard(stage, job), 1200));
   EXPECT_GT(*std::max_element(force.begin(), force.end()), 5);  // [N] it is played, forte
+}
+
+TEST(Erard, PlaysTheSameInTheLanesOfEveryInstructionSet) {
+  if (lane_names().empty()) GTEST_SKIP() << "this build has no lanes";
+  const Stage stage = load_stage(true);
+  Job job = keyboard_job("keyboard_all", 9);
+  const std::vector<double> force = play(*make_erard(stage, job), 400);
+  for (const std::string& name : lane_names()) {
+    job.lanes = name;
+    EXPECT_EQ(force, play(*make_erard(stage, job), 400)) << name;  // to the bit, erard/lanes/key_lanes.hpp
+  }
 }
 
 TEST(Erard, LeavesKeysAloneThatNobodyPlaysAndOnlyWhereItMay) {

@@ -141,6 +141,8 @@ TEST(ErardBench, WrongArgumentsAreToldInOneSentence) {
   expect_one_sentence(run_program("erard-bench --setting best"), {"--setting", "best"});
   expect_one_sentence(run_program("erard-bench --repeat 0"), {"--repeat"});
   expect_one_sentence(run_program("erard-bench --threads 0"), {"--threads"});
+  expect_one_sentence(run_program("erard-bench --lanes mmx"), {"--lanes", "mmx"});
+  expect_one_sentence(run_program("erard-bench --lanes avx512 --threads 2"), {"--lanes avx512"});  // or has none
   expect_one_sentence(run_program("erard-bench --sleep maybe"), {"--sleep", "maybe"});
   expect_one_sentence(run_program("erard-bench --margin 0"), {"--margin"});
   expect_one_sentence(run_program("erard-bench --margin nan"), {"--margin"});
