@@ -117,8 +117,7 @@ std::unique_ptr<Host> make_host(const ActionFile& action, const ClosedLoopSettin
 
 Coupling ClosedLoopSettings::coupling() const {
   if (const auto* plain = std::get_if<PlainHost>(&host)) return plain->coupling;
-  const RenderSettings& rendering = std::get<PipelineHost>(host).rendering;
-  return {rendering.coupling_stiffness, rendering.coupling_damping};
+  return std::get<PipelineHost>(host).rendering.coupling;
 }
 
 ForceCurve LoopTrace::finger_curve(double start) const {

@@ -43,7 +43,7 @@ Plant plant_of(const LoopCase& loop, double period) {
 /// Piston after an impulse on the position, or on the command, at time 0: a sample a period.
 std::vector<DriveSample> impulse_answer(PistonEstimator estimator, double position, double command) {
   constexpr std::size_t kLongest = 1000, kQuiet = 64;  // as long as the longest window
-  constexpr double kOver = 1e-12;                     // of the largest
+  constexpr double kOver = 1e-12;                      // of the largest
   estimator.reset(0);
   std::vector<DriveSample> answer;
   double largest_value = 0, largest_rate = 0;

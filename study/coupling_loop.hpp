@@ -18,15 +18,10 @@
 #include <vector>
 
 #include "erard/device/virtual_lever.hpp"
+#include "erard/haptics/passivity.hpp"
 #include "study/piston_estimator.hpp"
 
 namespace erard::study {
-
-/// Constants of the element between what is measured and the virtual key. thesis 5.4.1
-struct Coupling {
-  double stiffness = 6500;  // a [N/m]
-  double damping = 134;     // b [N s/m]
-};
 
 /// What is held by whom, and how late the force comes.
 struct LoopCase {
