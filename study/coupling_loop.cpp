@@ -91,10 +91,11 @@ CouplingLoop::CouplingLoop(const LoopCase& loop, double period, const PistonEsti
 CouplingLoop::Answer CouplingLoop::answer_at(const std::vector<DriveSample>& impulse, Complex z) {
   Answer sum;
   Complex power = 1;
+  const Complex earlier = 1.0 / z;
   for (const DriveSample& sample : impulse) {
     sum.value += sample.value * power;
     sum.rate += sample.rate * power;
-    power /= z;
+    power *= earlier;
   }
   return sum;
 }
