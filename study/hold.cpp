@@ -56,7 +56,7 @@ const char* name_of(Hold hold) {
     case Hold::on_bottom: return "on the key bottom, 5 N";
     case Hold::firm_bottom: break;
   }
-  return "on the key bottom, 20 N";
+  return "on the key bottom, 15 N";
 }
 
 HoldPoint hold_point(const ActionFile& action, const Coupling& coupling, Hold hold) {
@@ -65,7 +65,7 @@ HoldPoint hold_point(const ActionFile& action, const Coupling& coupling, Hold ho
   constexpr double kLongest = 4;                        // [s] of it
   constexpr double kPastButton = 3e-4, kDeep = 9.3e-3;  // [m] on the way from the button to escapement; on the punching
   if (hold == Hold::at_rest) return {kTouch / coupling.stiffness, kTouch};
-  const double bottom_force = hold == Hold::firm_bottom ? 20 : 5;  // [N]
+  const double bottom_force = hold == Hold::firm_bottom ? 15 : 5;  // [N]
   ActionFile pressed = action;
   pressed.model.finger.stiffness = coupling.stiffness;
   pressed.model.finger.damping = coupling.damping;

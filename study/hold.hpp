@@ -12,7 +12,7 @@ enum class Hold {
   at_rest,      // touching the key, with less than its weight
   at_let_off,   // where the jack has met the let-off button and the hammer is about to escape
   on_bottom,    // pressing the key into the front rail punching with 5 N
-  firm_bottom,  // the same with 20 N: the felt is stiff then, and the key as good as rigid
+  firm_bottom,  // the same with 15 N: the felt is stiff then; the 20 N of a guard are not reached
 };
 inline constexpr Hold kHolds[] = {Hold::at_rest, Hold::at_let_off, Hold::on_bottom, Hold::firm_bottom};
 const char* name_of(Hold hold);

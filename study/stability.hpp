@@ -54,7 +54,7 @@ ActionFile with_rigid_key(ActionFile action);
 /// Whether a hold of 20 N on a rigid key stays quiet, without dry friction and with noise of 2 um: command above 50 Hz
 /// below 5 N rms after three seconds.
 bool is_quiet_on_rigid_key(const ActionFile& rigid, const LoopSetting& setting, double lever_mass, int delay);
-/// The same on the bottom of the action itself.
+/// The same with 15 N on the bottom of the action itself.
 bool is_quiet_on_bottom(const ActionFile& action, const LoopSetting& setting, double lever_mass, int delay);
 
 }  // namespace erard::study
