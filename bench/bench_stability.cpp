@@ -46,7 +46,7 @@ struct Look {
 Panel map_panel(const ActionFile& rigid, double mass, int delay, const std::vector<Look>& looks, MapCount& count) {
   Panel panel{fmt::format("lever {}, {} period{} of delay", grams(mass), delay, delay > 1 ? "s" : ""),
               {"a [N/m]", {500, 40000}, true},
-              {"b [N s/m]", {1, 500}, true},
+              {"b [N s/m]", {0.3, 500}, true},
               {},
               "bottom left Left reverse samplen 2"};
   for (const auto& [setting, colour, aside] : looks) {
@@ -188,15 +188,15 @@ std::string passivity_table(const ActionFile& action, const LoopSetting& cautiou
           rendering.watch.highest = 0.026;  // past the rig's stop
           rendering.passivity.is_on = is_on;
           rendering.passivity.loop_delay = delay * kPeriod + kCoilLag;
+          rendering.coupling = is_cautious ? cautious.coupling : plain_setting().coupling;
+          rendering.track.estimator.kind = RateEstimatorKind::adaptive_line;
           if (is_cautious) {
-            rendering.coupling = cautious.coupling;
             rendering.track.estimator.kind = RateEstimatorKind::sliding_polynomial;
             rendering.track.estimator.length = 6;
             rendering.track.estimator.degree = 2;
           }
-          std::vector<std::string> row{is_cautious ? cautious.name : "as in config/device.yaml",
-                                       name_of(rendering.coupling), grams(mass), fmt::format("{}", delay),
-                                       is_on ? "on" : "off"};
+          std::vector<std::string> row{is_cautious ? cautious.name : "adaptive line", name_of(rendering.coupling),
+                                       grams(mass), fmt::format("{}", delay), is_on ? "on" : "off"};
           for (const Hold place : kHolds) {
             ClosedLoopSettings loop = loop_of(cautious, mass, delay, kHand);
             loop.rig.sensor.noise = kFineNoise;

@@ -1,5 +1,5 @@
-// The closed loop of a device and its action, offline and deterministic: the virtual rig, a host that answers its samples
-// with commands, a delay.
+// The closed loop of a device and its action, offline and deterministic: the virtual rig, a host that answers its
+// samples with commands, a delay.
 #pragma once
 
 #include <variant>

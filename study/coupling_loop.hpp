@@ -5,12 +5,12 @@
 //   piston    Y = Hyy(z) y + Hyu(z) u,  V likewise   of the estimator: Hyy = 1 and Hyu = 0 but for the observer
 //   command   u_k = a Y_k + b V_k                    the virtual key does not give way: it lies on its bottom
 //
-// Lever and actuator under a held command are y = -P(z) u, exactly. With Ky = a Hyy + b Hvy and Ku = a Hyu + b Hvu the loop is
+// Lever and actuator under a held command are y = -P(z) u, exactly. With Ky = a Hyy + b Hvy and Ku = a Hyu + b Hvu the
+// loop is
 //   1 + A(z) - Ku(z) = 0       A = Ky z^-n P
-// Its parts are stable, so it is stable if and only if the left side does not go round 0 while z goes round the unit circle
-// (Nyquist). The gain margin is the factor by which the force may be larger or smaller than what was commanded, or the
-// lever lighter or heavier than the observer thinks: from 1 to which 1 + g A - Ku never is 0. Without an observer it is as
-// well the factor by which a and b may grow together.
+// Its parts are stable, so it is stable if and only if the left side does not go round 0 while z goes round the unit
+// circle (Nyquist). The gain margin is the factor by which the force may be larger or smaller than what was commanded:
+// from 1 to which 1 + g A - Ku never is 0. Without an observer it is as well the factor by which a and b may grow together.
 #pragma once
 
 #include <cmath>

@@ -18,8 +18,8 @@ struct ReferenceStroke {
 };
 ReferenceStroke reference_stroke(const ActionFile& action, const std::string& keystroke, double end);
 
-/// X(t) with k (X - y) + d (X' - y') = F, the key position and force of the stroke: on an ideal device this finger would feel
-/// just that force. Solved exactly between samples for a right side on straight lines.
+/// X(t) with k (X - y) + d (X' - y') = F, the key position and force of the stroke: on an ideal device this finger
+/// would feel just that force. Solved exactly between samples, y and F on straight lines.
 Keystroke intended_by(const FingerSettings& finger, const ReferenceStroke& stroke);
 
 struct Fidelity {

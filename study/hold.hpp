@@ -28,14 +28,13 @@ HoldPoint hold_point(const ActionFile& action, const Coupling& coupling, Hold ho
 /// A finger that comes there within a second and stays for `seconds`: X = position + force / k.
 Keystroke hold_with(const FingerSettings& finger, const HoldPoint& point, double seconds);
 
-/// rms of what is above 50 Hz in part of a signal [its unit]: a high pass of the fourth order (Butterworth), run from the
-/// beginning of the signal.
+/// rms of what is above 50 Hz in part of a signal [its unit]: a high pass of the fourth order (Butterworth), run from
+/// the beginning of the signal.
 double rms_above_50_Hz(const std::vector<double>& signal, double period, double from, double until);
 
-/// What became of a hold. The command's rms above 50 Hz
-///   does not grow:  in the last second it is at most kNoGrowth times that of the second before
-///   does not buzz:  nor is it more than twice what noise makes of a stable loop. Growth alone would let a limit cycle
-///                   pass, which the actuator's limit holds at 30 N
+/// What became of a hold. A stable loop does not grow: in the last second the command's rms above 50 Hz is at most
+/// kNoGrowth times that of the second before; nor does it stand above what noise makes of it. Growth alone would let a
+/// limit cycle pass, which the actuator's limit holds.
 struct HoldVerdict {
   double before = 0, last = 0;  // rms of the command above 50 Hz in the last but one and the last second [N]
   double finger = 0;            // the same of the finger's force in the last second [N]
