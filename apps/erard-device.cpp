@@ -58,6 +58,13 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::PositiveNumber);
 }
 
+/// To the person at the screen. That may be gone: the host does not stop for it.
+template <typename... Args>
+void say(std::FILE* where, fmt::format_string<Args...> words, Args&&... args) {
+  const std::string text = fmt::format(words, std::forward<Args>(args)...);
+  std::fwrite(text.data(), 1, text.size(), where);
+}
+
 std::string names_of(Fault faults) {
   std::string text;
   for (int i = 0; i < kFaultCount; ++i)
@@ -70,7 +77,7 @@ class Display {
  public:
   void show(const Host& host, double elapsed) {
     const HostNews news = host.news();
-    const Fault now = news.has_input ? host.faults_now() & kTold : Fault::none;
+    const Fault now = news.has_input ? news.now & kTold : Fault::none;
     if (news.has_input && !had_input_) line(elapsed, "positions arrive");
     had_input_ = news.has_input;
     if (const Fault begun = now & ~before_; begun != Fault::none) line(elapsed, names_of(begun));
@@ -78,14 +85,13 @@ class Display {
     before_ = now;
     if (!is_terminal_) return;
     const LoopStatus loop = host.loop();
-    fmt::print(stderr,
-               "\r{:8.1f} s  {} periods  {} missed  {} blows  {} asleep  woke {:.0f} us late, worked {:.0f} us  ",
-               elapsed, loop.periods, loop.missed, news.blows, news.asleep,
-               1e-3 * static_cast<double>(loop.last_lateness_ns), 1e-3 * static_cast<double>(loop.last_work_ns));
+    say(stderr, "\r{:8.1f} s  {} periods  {} missed  {} blows  {} asleep  woke {:.0f} us late, worked {:.0f} us  ",
+        elapsed, loop.periods, loop.missed, news.blows, news.asleep, 1e-3 * static_cast<double>(loop.last_lateness_ns),
+        1e-3 * static_cast<double>(loop.last_work_ns));
     std::fflush(stderr);
   }
   ~Display() {
-    if (is_terminal_) fmt::print(stderr, "\n");
+    if (is_terminal_) say(stderr, "\n");
   }
 
  private:
@@ -93,7 +99,7 @@ class Display {
   static constexpr Fault kTold = ~(Fault::step_not_converged | Fault::slew_limited | Fault::gap | Fault::realigned);
 
   void line(double elapsed, const std::string& text) const {
-    fmt::print(stderr, "{}{:8.1f} s  {}\n", is_terminal_ ? "\r\033[K" : "", elapsed, text);
+    say(stderr, "{}{:8.1f} s  {}\n", is_terminal_ ? "\r\033[K" : "", elapsed, text);
   }
 
   bool is_terminal_ = isatty(STDERR_FILENO) != 0;
@@ -112,25 +118,24 @@ void report(const Host& host, const LoopSummary& run, double elapsed) {
   const HostNews news = host.news();
   const ReceiverCounts received = host.received();
   const double periods = static_cast<double>(std::max<std::int64_t>(loop.periods, 1));
-  fmt::print("\nperiods          {} of {:.0f} us in {:.1f} s, {} left out\n", loop.periods,
-             1e-3 * static_cast<double>(std::llround(1e9 * host.settings().rendering.tick.period)), elapsed,
-             loop.skipped);
-  fmt::print("missed           {}: woke late {}, interrupted {}, worked long {}\n", loop.missed,
-             loop.missed_by(MissCause::woke_late), loop.missed_by(MissCause::interrupted),
-             loop.missed_by(MissCause::worked_long));
-  fmt::print("wake-up          {}\n", quantiles(host.wake_lateness()));
-  fmt::print("work             {}\n", quantiles(host.work_time()));
-  fmt::print("sample to force  {}\n", quantiles(host.latency()));
-  fmt::print("page faults      {} minor, {} major; {} involuntary switches\n", run.usage.minor_faults,
-             run.usage.major_faults, run.usage.involuntary_switches);
-  fmt::print(
+  say(stdout, "\nperiods          {} of {:.0f} us in {:.1f} s, {} left out\n", loop.periods,
+      1e-3 * static_cast<double>(std::llround(1e9 * host.settings().rendering.tick.period)), elapsed, loop.skipped);
+  say(stdout, "missed           {}: woke late {}, interrupted {}, worked long {}\n", loop.missed,
+      loop.missed_by(MissCause::woke_late), loop.missed_by(MissCause::interrupted),
+      loop.missed_by(MissCause::worked_long));
+  say(stdout, "wake-up          {}\n", quantiles(host.wake_lateness()));
+  say(stdout, "work             {}\n", quantiles(host.work_time()));
+  say(stdout, "sample to force  {}\n", quantiles(host.latency()));
+  say(stdout, "page faults      {} minor, {} major; {} involuntary switches\n", run.usage.minor_faults,
+      run.usage.major_faults, run.usage.involuntary_switches);
+  say(stdout,
       "positions        {} used, {} lost on the way, {} of another type or size, {} overflowed, {} dropped by the "
       "kernel\n",
       news.accepted, news.lost, received.wrong_type + received.wrong_size, received.overflow, host.dropped_by_kernel());
-  fmt::print("blows            {}, the last at {:.2f} m/s\n", news.blows, news.last_blow_speed);
-  fmt::print("force            largest {:.2f} N, largest change in a period {:.3f} N\n", news.largest_force,
-             news.largest_change);
-  fmt::print(
+  say(stdout, "blows            {}, the last at {:.2f} m/s\n", news.blows, news.last_blow_speed);
+  say(stdout, "force            largest {:.2f} N, largest change in a period {:.3f} N\n", news.largest_force,
+      news.largest_change);
+  say(stdout,
       "periods with     passivity {:.3f} %, force limit {:.3f} %, slew limit {:.3f} %, actuator limit {:.3f} %\n",
       100 * static_cast<double>(news.passivity_periods) / periods,
       100 * static_cast<double>(news.force_limit_periods) / periods,
@@ -138,13 +143,13 @@ void report(const Host& host, const LoopSummary& run, double elapsed) {
       100 * static_cast<double>(news.actuator_limit_periods) / periods);
   const RecorderStatus recorder = host.recorder();
   if (recorder.events > 0 || !recorder.trouble.empty())
-    fmt::print("recorded         {} messages, {} bytes, {} lost{}\n", recorder.events, recorder.bytes, recorder.lost,
-               recorder.trouble.empty() ? "" : "; stopped: " + recorder.trouble);
-  if (recorder.faults_saved > 0) fmt::print("faults saved     {} files\n", recorder.faults_saved);
-  fmt::print("faults           {}\n", host.faults_ever() == Fault::none ? "none" : "");
+    say(stdout, "recorded         {} messages, {} bytes, {} lost{}\n", recorder.events, recorder.bytes, recorder.lost,
+        recorder.trouble.empty() ? "" : "; stopped: " + recorder.trouble);
+  if (recorder.faults_saved > 0) say(stdout, "faults saved     {} files\n", recorder.faults_saved);
+  say(stdout, "faults           {}\n", news.ever == Fault::none ? "none" : "");
   for (int i = 0; i < kFaultCount; ++i) {
-    if (!has(host.faults_ever(), static_cast<Fault>(1u << i))) continue;
-    fmt::print("  {:<19} began {} times\n", fault_name(i), news.begun[static_cast<std::size_t>(i)]);
+    if (!has(news.ever, static_cast<Fault>(1u << i))) continue;
+    say(stdout, "  {:<19} began {} times\n", fault_name(i), news.begun[static_cast<std::size_t>(i)]);
   }
 }
 
@@ -160,17 +165,18 @@ int run(const Options& o) {
   const SessionParts parts = load_session(session);
 
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { is_interrupted = true; });
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // a screen or a disk that is no more
   HostOptions options{o.pace == "messages" ? HostPace::messages : HostPace::clock, o.record, o.fault_folder,
                       to_text(session)};
   Host host(parts.action, parts.settings, options);
-  fmt::print("{}", grant_table(host.grants()));
+  say(stdout, "{}", grant_table(host.grants()));
   if (!host.is_real_time() && !o.is_best_effort)
     throw std::runtime_error("this machine does not grant real time; see above, or let --best-effort carry on without");
-  if (!host.is_real_time()) fmt::print("carrying on without real time (--best-effort): forces may come late\n");
+  if (!host.is_real_time()) say(stdout, "carrying on without real time (--best-effort): forces may come late\n");
   const RenderSettings& r = parts.settings.rendering;
-  fmt::print("{} key{}, {:g} Hz; positions from {} {}, forces to {} {}\n", r.keys, r.keys == 1 ? "" : "s",
-             1 / r.tick.period, parts.settings.link.positions_url, parts.settings.link.positions_channel,
-             parts.settings.link.forces_url, parts.settings.link.forces_channel);
+  say(stdout, "{} key{}, {:g} Hz; positions from {} {}, forces to {} {}\n", r.keys, r.keys == 1 ? "" : "s",
+      1 / r.tick.period, parts.settings.link.positions_url, parts.settings.link.positions_channel,
+      parts.settings.link.forces_url, parts.settings.link.forces_channel);
   std::fflush(stdout);
 
   using Clock = std::chrono::steady_clock;
@@ -193,6 +199,8 @@ int run(const Options& o) {
   const LoopSummary summary = host.finish();
   host.publish_status();
   report(host, summary, elapsed());
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("the report could not be written to the standard output");
   return kDone;
 }
 

@@ -19,7 +19,7 @@ inline constexpr int kDone = 0, kFailed = 1, kBadInput = 2, kInterrupted = 130;
 inline void complain(std::string message) {
   for (char& c : message)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  fmt::print(stderr, "{}\n", message);
+  std::fputs((message + '\n').c_str(), stderr);  // which may be closed
 }
 
 /// Parses the arguments into what `app` was told of, then runs. Adds --version.

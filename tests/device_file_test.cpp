@@ -182,8 +182,8 @@ TEST(DeviceFile, BadValuesAreRefusedInOneSentenceWithTheirPlace) {
            Case{"on: yes", "on: perhaps", "on = perhaps in passivity, must be one of yes, no"},
            Case{"priority: 80", "priority: 100", "priority = 100 in real_time, must be 0 to 99"},
            Case{"phase_us: 150", "phase_us: 600", "phase_us = 600 in real_time, must be 0 to 500"},
-           Case{"forces_channel: FORCES", "forces_channel: POSITIONS",
-                "forces_channel = POSITIONS in link, must differ from positions_channel"},
+           Case{"forces_channel: ERARD_FORCES", "forces_channel: ERARD_POSITIONS",
+                "forces_channel = ERARD_POSITIONS in link, must differ from positions_channel"},
            Case{"stiffness_N_per_m: 2000", "stiffness_N_per_m: 0",
                 "stiffness_N_per_m = 0 in passivity safe_coupling, must be > 0"},
        }) {

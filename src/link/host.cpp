@@ -4,6 +4,7 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "erard/device/host_status.hpp"
@@ -92,7 +93,12 @@ void Host::go() {
   begun_.get_future().wait();
 }
 
-void Host::stop() noexcept { loop_.stop(); }
+void Host::stop() noexcept {
+  if (period_)
+    period_->let_go();
+  else
+    loop_.stop();
+}
 
 LoopSummary Host::finish() {
   if (!is_answered_) {
@@ -101,6 +107,7 @@ LoopSummary Host::finish() {
   }
   if (thread_.joinable()) thread_.join();
   recorder_.finish();
+  is_over_ = true;
   return summary_;
 }
 
@@ -131,14 +138,13 @@ void Host::work() {
   });
 }
 
-Fault Host::faults_now() const {
-  const Fault now = news().now;
-  return recorder_.status().trouble.empty() ? now : now | Fault::recording_stopped;
-}
-
-Fault Host::faults_ever() const {
-  const Fault ever = news().ever;
-  return recorder_.status().trouble.empty() ? ever : ever | Fault::recording_stopped;
+HostNews Host::news() const {
+  HostNews news = period_ ? period_->news() : HostNews{};
+  if (recorder_.status().trouble.empty()) return news;
+  news.now |= Fault::recording_stopped;
+  news.ever |= Fault::recording_stopped;
+  news.begun[std::countr_zero(static_cast<std::uint32_t>(Fault::recording_stopped))] = 1;
+  return news;
 }
 
 host_status_t Host::status() const {
@@ -146,7 +152,8 @@ host_status_t Host::status() const {
   const HostNews news = this->news();
   status.publisher_id = period_ ? period_->publisher_id() : 0;
   status.device_time_ns = MonotonicClock{}.now();
-  status.state = !period_          ? host_status_t::kStarting
+  status.state = is_over_          ? host_status_t::kStopping
+                 : !period_        ? host_status_t::kStarting
                  : !news.has_input ? host_status_t::kWaiting
                  : news.is_fading  ? host_status_t::kFading
                                    : host_status_t::kRunning;
@@ -164,8 +171,8 @@ host_status_t Host::status() const {
   fill_counts(loop(), news, received(), status);
   fill_bins(wake_lateness(), status.wake_latency_count);
   fill_bins(work_time(), status.work_time_count);
-  status.fault_bits_now = static_cast<std::int32_t>(faults_now());
-  status.fault_bits_ever = static_cast<std::int32_t>(faults_ever());
+  status.fault_bits_now = static_cast<std::int32_t>(news.now);
+  status.fault_bits_ever = static_cast<std::int32_t>(news.ever);
   status.dropped_by_kernel = dropped_by_kernel();
   return status;
 }

@@ -51,7 +51,9 @@ HostPeriod::HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& po
 
 bool HostPeriod::operator()(const Period& period) noexcept {
   trouble_ = Fault::none;
+  is_letting_go_ = is_to_let_go_.load(std::memory_order_relaxed);
   take_positions();
+  if (is_letting_go_) arrived_count_ = 0;
   const PeriodOutput& out =
       renderer_.period({period.woke_ns, std::span(message_).first(static_cast<std::size_t>(arrived_count_))});
   publish(out);
@@ -59,7 +61,13 @@ bool HostPeriod::operator()(const Period& period) noexcept {
   tell(period, out);
   show(period, out);
   steer(period);
-  return true;
+  return !(is_letting_go_ && is_gone(out));
+}
+
+/// All forces are zero and will stay so.
+bool HostPeriod::is_gone(const PeriodOutput& out) const noexcept {
+  return std::all_of(out.key.begin(), out.key.end(),
+                     [](const KeyOutput& key) { return key.fade == 0 && key.force == 0; });
 }
 
 /// All that came since the last period, as it came; what is of another kind than the drive is left out.
@@ -156,7 +164,9 @@ void HostPeriod::tell(const Period& period, const PeriodOutput& out) noexcept {
   const std::int64_t missed = loop_.missed();
   if (missed > missed_ || period.skipped > 0) trouble_ |= Fault::period_missed;
   missed_ = missed;
-  const Fault now = out.faults | trouble_, begun = now & ~news_.now;
+  Fault now = out.faults | trouble_;
+  if (is_letting_go_) now = now & ~Fault::no_input;  // it was not listened to
+  const Fault begun = now & ~news_.now;
   news_.faults = renderer_.counters();
   news_.host_faults.add(trouble_);
   for (int i = 0; i < kFaultCount; ++i)

@@ -15,16 +15,8 @@
 
 namespace erard::test {
 
-/// Moves the calling process into a network namespace where loopback is up. Call it while there is one thread only.
-/// @param has_multicast_route  what `ip route add 224.0.0.0/4 dev lo` does
-/// @return what was refused; empty when all was granted
-inline std::string enter_own_network(bool has_multicast_route = true) {
-  if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0)
-    return std::string("no network namespace: ") + std::strerror(errno);
-  const int probe = socket(AF_INET, SOCK_DGRAM, 0);
-  ifreq loopback{};
-  std::strcpy(loopback.ifr_name, "lo");
-  loopback.ifr_flags = IFF_UP;
+/// What `ip route add 224.0.0.0/4 dev lo` does, or `del`. @return whether it was done
+inline bool set_multicast_route(bool is_there) {
   rtentry route{};
   char device[] = "lo";
   route.rt_dev = device;
@@ -36,9 +28,23 @@ inline std::string enter_own_network(bool has_multicast_route = true) {
   };
   address(route.rt_dst, 0xE0000000);
   address(route.rt_genmask, 0xF0000000);
+  const int probe = socket(AF_INET, SOCK_DGRAM, 0);
+  const bool is_done = ioctl(probe, is_there ? SIOCADDRT : SIOCDELRT, &route) == 0;
+  close(probe);
+  return is_done;
+}
+
+/// Moves the calling process into a network namespace where loopback is up. Call it while there is one thread only.
+/// @return what was refused; empty when all was granted
+inline std::string enter_own_network(bool has_multicast_route = true) {
+  if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0)
+    return std::string("no network namespace: ") + std::strerror(errno);
+  const int probe = socket(AF_INET, SOCK_DGRAM, 0);
+  ifreq loopback{};
+  std::strcpy(loopback.ifr_name, "lo");
+  loopback.ifr_flags = IFF_UP;
   std::string refused;
-  if (probe < 0 || ioctl(probe, SIOCSIFFLAGS, &loopback) != 0 ||
-      (has_multicast_route && ioctl(probe, SIOCADDRT, &route) != 0))
+  if (probe < 0 || ioctl(probe, SIOCSIFFLAGS, &loopback) != 0 || (has_multicast_route && !set_multicast_route(true)))
     refused = std::string("no loopback in the network namespace: ") + std::strerror(errno);
   close(probe);
   return refused;

@@ -35,7 +35,7 @@ struct HostOptions {
 ///     show(host.grants());
 ///     host.go();                             // from here on positions become forces
 ///     ... host.publish_status() some ten times a second ...
-///     host.stop();                           // after the period under way
+///     host.stop();                           // no more positions; once the forces have faded the loop ends
 class Host {
  public:
   /// Throws InputError or std::runtime_error with the remedy when files, sockets or threads cannot be had. What real
@@ -49,11 +49,11 @@ class Host {
   bool is_real_time() const noexcept;  // all was granted
 
   void go();
-  void stop() noexcept;
-  /// After stop(): the whole of the run. Waits for the period under way.
+  void stop() noexcept;  // lets go of all keys: the forces fade, then the loop ends
+  /// After stop(): the whole of the run. Waits for the loop's end.
   LoopSummary finish();
 
-  HostNews news() const noexcept { return period_ ? period_->news() : HostNews{}; }
+  HostNews news() const;  // the recorder's troubles included
   LoopStatus loop() const noexcept { return loop_.status(); }
   DurationHistogram wake_lateness() const noexcept { return loop_.wake_lateness(); }
   DurationHistogram work_time() const noexcept { return loop_.work_time(); }
@@ -62,10 +62,6 @@ class Host {
   std::int64_t dropped_by_kernel() const noexcept { return receiver_.listener().dropped_by_kernel(); }
   RecorderStatus recorder() const { return recorder_.status(); }
   const DeviceSettings& settings() const noexcept { return settings_; }
-
-  /// Faults of now and ever, the recorder's included.
-  Fault faults_now() const;
-  Fault faults_ever() const;
 
   /// Publishes host_status_t and one key as action_state_t. From the thread that made the host.
   void publish_status();
@@ -88,7 +84,7 @@ class Host {
   std::promise<void> asked_;   // by the real-time thread: grants_ is there
   std::promise<bool> answer_;  // to it: run, or end
   std::promise<void> begun_;   // by it: period_ is there
-  bool is_answered_ = false;
+  bool is_answered_ = false, is_over_ = false;
   LoopSummary summary_;
   std::thread thread_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 
 #include "erard/device/device_file.hpp"
@@ -55,7 +56,11 @@ class HostPeriod {
   HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& positions, Sender& sender, Renderer& renderer,
              Recorder& recorder, PeriodicLoop<>& loop, bool is_steered);
 
+  /// @return whether the loop goes on
   bool operator()(const Period& period) noexcept;
+
+  /// From any thread: take no more positions, so that the forces fade as in silence, and end when they are gone.
+  void let_go() noexcept { is_to_let_go_.store(true, std::memory_order_relaxed); }
 
   HostNews news() const noexcept { return news_shared_.load(); }              // from slower threads
   KeyView view() const noexcept { return view_shared_.load(); }               // likewise, another key every time
@@ -72,6 +77,7 @@ class HostPeriod {
   void tell(const Period& period, const PeriodOutput& out) noexcept;
   void show(const Period& period, const PeriodOutput& out) noexcept;
   void steer(const Period& period) noexcept;
+  bool is_gone(const PeriodOutput& out) const noexcept;
   template <typename Message>
   void head(Message& message, const PeriodOutput& out) const noexcept;
 
@@ -83,6 +89,8 @@ class HostPeriod {
   PeriodicLoop<>& loop_;
   PhaseLock lock_;
   bool is_steered_;
+  std::atomic<bool> is_to_let_go_{false};
+  bool is_letting_go_ = false;  // as of this period
   std::int64_t publisher_;
   std::int64_t validity_ns_;
 
