@@ -87,7 +87,7 @@ class Pipeline : public Host {
   double answer(double sample) override {
     const auto time = static_cast<std::int64_t>(std::llround(1e9 * renderer_->settings().tick.period)) * ++sequence_;
     const PositionMessage message{1, sequence_, time, {&sample, 1}};
-    const PeriodOutput& out = renderer_->period({time, &message});
+    const PeriodOutput& out = renderer_->period({time, {&message, 1}});
     const KeyOutput& key = out.key[0];
     if (has(key.faults, Fault::step_not_finite)) throw std::runtime_error("closed loop: a step that is not finite");
     if (!out.blow.empty() && hammer_speed_ == 0) hammer_speed_ = out.blow[0].speed;

@@ -294,8 +294,7 @@ TEST(Contacts, ClosedContactsDoNotPenetrate) {
     };
     const long periods = std::lround((keystroke.end() - keystroke.start()) / settings.period);
     state.time = keystroke.start();
-    for (long i = 0; i < periods; ++i)
-      tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, measure);
+    for (long i = 0; i < periods; ++i) tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, measure);
   }
   EXPECT_LT(closed, 1e-6);
   EXPECT_LT(closing, 5e-6);
@@ -313,8 +312,7 @@ TEST(Energy, OfTheReleasedActionNeverGrows) {
     State state = rest_state(mechanism, settings.scheme.time_step);
     Workspace work;
     const auto ignore = [](const State&, const StepReport&, double) noexcept {};
-    while (state.time < release - 1e-9)
-      tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, ignore);
+    while (state.time < release - 1e-9) tick(mechanism, settings, KeystrokeInput{&keystroke}, state, work, ignore);
     settings.drive = DriveKind::none;
     std::vector<double> energy{measure_energy(mechanism, state).total()};
     for (int i = 0; i < 1000; ++i)

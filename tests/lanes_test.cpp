@@ -116,8 +116,8 @@ TEST_P(EverySet, GivesTheBitsOfTheScalarEngineWithADamper) {
   ActionOptions options;
   options.damper = true;
   const Keystroke forte = test::keystroke("forte");
-  expect_same(compare({test::grand_action(options).model}, std::vector<int>(5, 0), spread(forte, 0.7), 0.5, settings_of(1),
-                      GetParam()),
+  expect_same(compare({test::grand_action(options).model}, std::vector<int>(5, 0), spread(forte, 0.7), 0.5,
+                      settings_of(1), GetParam()),
               "damper");
 }
 
@@ -125,8 +125,8 @@ TEST_P(EverySet, LetsKeysSleepAndWakeAsTheScalarEngineDoes) {
   const Keystroke piano = test::keystroke("piano");
   const std::vector<Part> parts{{&piano, 0.1, 1.2}, {}, {&piano, 0.3, 1.2, 0.15}, {&piano, 0.2, 0.9}};
   for (const SleepSettings& sleep : {SleepSettings{}, SleepSettings::eager()}) {
-    const Comparison result = compare({test::grand_action().model}, std::vector<int>(4, 0), parts, 1.5, settings_of(1),
-                                      GetParam(), sleep);
+    const Comparison result =
+        compare({test::grand_action().model}, std::vector<int>(4, 0), parts, 1.5, settings_of(1), GetParam(), sleep);
     expect_same(result, "sleep");
     EXPECT_LT(result.count.in_lanes, 3 * 3000);  // of 4 x 3000: they did sleep
   }
@@ -141,8 +141,7 @@ TEST_P(EverySet, StepsGradedKeysTogether) {
   }
   const Keystroke forte = test::keystroke("forte");
   for (const int steps : {1, 0}) {
-    const Comparison result =
-        compare(models, {0, 1, 3, 2, 1}, spread(forte, 0.6), 0.8, settings_of(steps), GetParam());
+    const Comparison result = compare(models, {0, 1, 3, 2, 1}, spread(forte, 0.6), 0.8, settings_of(steps), GetParam());
     expect_same(result, "graded");
     // together: batches are as many as for equal keys
     const Comparison equal =
@@ -179,10 +178,12 @@ TEST_P(EverySet, FollowsEveryDrive) {
     values.push_back(1 - std::cos(20 * t));
   }
   const Keystroke push{KeystrokeQuantity::force, times, values};
-  expect_same(compare(models, std::vector<int>(5, 0), spread(push, 0.4), 0.4, settings_of(0, DriveKind::force), GetParam()),
-              "force");
-  expect_same(compare(models, std::vector<int>(5, 0), std::vector<Part>(5), 0.1, settings_of(0, DriveKind::none), GetParam()),
-              "none");
+  expect_same(
+      compare(models, std::vector<int>(5, 0), spread(push, 0.4), 0.4, settings_of(0, DriveKind::force), GetParam()),
+      "force");
+  expect_same(
+      compare(models, std::vector<int>(5, 0), std::vector<Part>(5), 0.1, settings_of(0, DriveKind::none), GetParam()),
+      "none");
   for (double& value : values) value *= 0.004;
   const Keystroke motion{KeystrokeQuantity::position, times, values};
   const Comparison alone =
@@ -208,7 +209,8 @@ TEST_P(EverySet, InputThatIsNotFiniteConcernsItsOwnKeyAlone) {
   const Keystroke forte = test::keystroke("forte");
   for (const int steps : {1, 0})
     for (const double bad : {kNan, kInfinity}) {
-      Keyboard scalar(test::grand_action().model, 5, settings_of(steps)), keyboard(test::grand_action().model, 5, settings_of(steps));
+      Keyboard scalar(test::grand_action().model, 5, settings_of(steps)),
+          keyboard(test::grand_action().model, 5, settings_of(steps));
       KeyLanes lanes(keyboard, GetParam());
       std::vector<DriveSample> inputs;
       for (int i = 0; i < 400; ++i) {
@@ -228,7 +230,8 @@ TEST_P(EverySet, InputThatIsNotFiniteConcernsItsOwnKeyAlone) {
 }
 
 TEST_P(EverySet, AbsurdInputIsLeftToTheScalarEngine) {
-  Keyboard scalar(test::grand_action().model, 3, settings_of(1)), keyboard(test::grand_action().model, 3, settings_of(1));
+  Keyboard scalar(test::grand_action().model, 3, settings_of(1)),
+      keyboard(test::grand_action().model, 3, settings_of(1));
   KeyLanes lanes(keyboard, GetParam());
   const std::vector<DriveSample> inputs{{0, 0}, {0.05, 100}, {1e9, 1e12}};
   for (int i = 0; i < 20; ++i) {

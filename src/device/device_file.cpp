@@ -172,7 +172,9 @@ LinkSettings read_link(YamlSection section) {
 
 }  // namespace
 
-DeviceSettings load_device(const std::filesystem::path& file) { return load_device(read_config(file, "a device file")); }
+DeviceSettings load_device(const std::filesystem::path& file) {
+  return load_device(read_config(file, "a device file"));
+}
 
 DeviceSettings load_device(const ConfigText& config) {
   YamlSection device(config.name, "", parse_yaml(config), 1);

@@ -22,13 +22,13 @@ struct BodyPlan {
 
 /// One contact in play.
 struct ContactPlan {
-  int number;                    // in the model
-  int body_a, body_b;            // or -1
+  int number;          // in the model
+  int body_a, body_b;  // or -1
   bool is_segment_a, is_segment_b;
-  bool is_point_on_b;            // where friction acts
-  int row;                       // of its normal in the RowTable
+  bool is_point_on_b;  // where friction acts
+  int row;             // of its normal in the RowTable
   bool has_friction;
-  int path_count;                // coordinates of its path, ascending
+  int path_count;  // coordinates of its path, ascending
   int path[kMaxBodies];
   double sign[kMaxBodies];
   bool operator==(const ContactPlan&) const = default;
@@ -146,7 +146,7 @@ struct Batch {
   void* state;          // StateNumbers<T>: in start, out end of the step in the lanes taken, of no use in the others
   const bool* is_used;  // of each lane
   Outcome* outcome;
-  void* work;           // scratch
+  void* work;  // scratch
 };
 
 /// The step for one instruction set.

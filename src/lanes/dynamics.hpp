@@ -54,8 +54,7 @@ void assemble_bias(const Batch& batch, Work<T>& work) noexcept {
     } else {
       const T carried = rate[body.parent];
       rate[i] = carried;
-      acceleration[i] =
-          acceleration[body.parent] - carried * carried * (work.origin[i] - work.origin[body.parent]);
+      acceleration[i] = acceleration[body.parent] - carried * carried * (work.origin[i] - work.origin[body.parent]);
       if (body.is_prismatic) acceleration[i] = acceleration[i] + T(2.0) * carried * v[i] * perp(work.slide[i]);
     }
     if (!body.is_prismatic) rate[i] += v[i];

@@ -114,8 +114,7 @@ Rounded<T> power(const Tables& tables, const T& base, const T& exponent) noexcep
   const Vector<T> log = logarithm(tables, base);
   const T first = exponent * log.x, rest = fused(exponent, log.x, -first) + exponent * log.y;
   const Rounded<T> rounded = exponential(tables, first, rest);
-  return {rounded.value,
-          rounded.is_sure & (base > T(1e-290)) & (base < T(1e290)) & (abs(first) < T(600.0))};
+  return {rounded.value, rounded.is_sure & (base > T(1e-290)) & (base < T(1e290)) & (abs(first) < T(600.0))};
 }
 
 /// base^exponent of `count` numbers > 0: all by the tables first, without a branch, so that the CPU works at several vectors
@@ -163,16 +162,23 @@ void turn_by_table(const Tables& tables, const T& angle, Rounded<T>& cosine, Rou
   const Bits<T> index = xsimd::bitwise_cast<Bits<T>>(shifted) & Bits<T>(127);
   const T d = size - (shifted - T(kShift)) * T(1.0 / Tables::kTurns), d2 = d * d;  // exact
   const T C = from_table<T>(tables.cosine, index), S = from_table<T>(tables.sine, index);
-  const T more = d * d2 * fused(d2, fused(d2, T(-1.0 / 5040), T(1.0 / 120)), T(-1.0 / 6));         // sin d - d
-  const T less = d2 * fused(d2, fused(d2, fused(d2, T(1.0 / 40320), T(-1.0 / 720)), T(1.0 / 24)), T(-0.5));  // cos d - 1
+  const T more = d * d2 * fused(d2, fused(d2, T(-1.0 / 5040), T(1.0 / 120)), T(-1.0 / 6));  // sin d - d
+  const T less =
+      d2 * fused(d2, fused(d2, fused(d2, T(1.0 / 40320), T(-1.0 / 720)), T(1.0 / 24)), T(-0.5));  // cos d - 1
   T lost;
   const T up = C * d, right = -S * d;
   const T first = exact_sum(S, up, lost);
-  sine = round_sum(first, lost + fused(C, d, -up) + fused(from_table<T>(tables.cosine_rest, index), d,
-                                                      from_table<T>(tables.sine_rest, index)) + fused(C, more, S * less), 0.47);
+  sine = round_sum(first,
+                   lost + fused(C, d, -up) +
+                       fused(from_table<T>(tables.cosine_rest, index), d, from_table<T>(tables.sine_rest, index)) +
+                       fused(C, more, S * less),
+                   0.47);
   const T last = exact_sum(C, right, lost);
-  cosine = round_sum(last, lost + fused(-S, d, -right) + fused(-from_table<T>(tables.sine_rest, index), d,
-                                                           from_table<T>(tables.cosine_rest, index)) + fused(-S, more, C * less), 0.47);
+  cosine = round_sum(last,
+                     lost + fused(-S, d, -right) +
+                         fused(-from_table<T>(tables.sine_rest, index), d, from_table<T>(tables.cosine_rest, index)) +
+                         fused(-S, more, C * less),
+                     0.47);
   sine.value = copysign(sine.value, angle);
 }
 

@@ -97,8 +97,7 @@ void locate_contacts(const Batch& batch, Work<T>& work) noexcept {
     PlacedContact<T>& place = work.contact[c];
     locate(contact, action.contact[c], work, place);
     set_levers(plan, contact, place.point, place.normal, work, place.normal_lever);
-    if (contact.has_friction)
-      set_levers(plan, contact, place.point, perp(place.normal), work, place.tangent_lever);
+    if (contact.has_friction) set_levers(plan, contact, place.point, perp(place.normal), work, place.tangent_lever);
   }
 }
 

@@ -130,8 +130,7 @@ void LanePlayer::Band::step_batch(std::span<Player* const> batch, const LaneSche
     passengers[l] = {player.turn->model, &next[l], player.turn->state, is_finite(next[l])};
   }
   ++count.batches;
-  const lanes::Outcome& outcome =
-      packing.step({passengers.data(), batch.size()}, scheme.settings);
+  const lanes::Outcome& outcome = packing.step({passengers.data(), batch.size()}, scheme.settings);
   for (std::size_t l = 0; l < batch.size(); ++l) {
     if (!outcome.is_taken[l] && !outcome.is_refused[l]) {
       step_alone(*batch[l], scheme, next[l]);
@@ -184,7 +183,8 @@ void LanePlayer::play(std::span<Turn> turns, Observer observer, void* context) n
   for (std::size_t i = 0; i < turns.size(); ++i) {
     Turn& turn = turns[i];
     turn.report = {};
-    band.players[i] = {&turn, {band.settings.drive, {}, turn.input.at(turn.state->time)}, turn.state->time, false, false};
+    band.players[i] = {
+        &turn, {band.settings.drive, {}, turn.input.at(turn.state->time)}, turn.state->time, false, false};
   }
   const auto choose = [&](auto&& is_chosen) noexcept {
     std::size_t number = 0;

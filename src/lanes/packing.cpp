@@ -100,8 +100,8 @@ const Outcome& Packing::step(std::span<const Passenger> passengers, const Settin
   load(passengers, plan);
   bool is_used[kMaxLanes] = {};
   for (std::size_t l = 0; l < passengers.size(); ++l) is_used[l] = passengers[l].is_driven_by_numbers;
-  kernel_.step({&plan, &settings, &calls_, action_.data(), drive_.data(), state_.data(), is_used, &outcome_,
-                work_.data()});
+  kernel_.step(
+      {&plan, &settings, &calls_, action_.data(), drive_.data(), state_.data(), is_used, &outcome_, work_.data()});
   store(passengers, plan);
   return outcome_;
 }

@@ -55,9 +55,9 @@ class Packing {
   const Kernel& kernel_;
   const Calls& calls_;
   std::vector<Plan> plans_;
-  std::vector<int> plan_of_;                   // of each model
+  std::vector<int> plan_of_;                    // of each model
   std::vector<ActionNumbers<double>> numbers_;  // of each model
-  int loaded_[kMaxLanes];                      // model whose numbers stand in each lane
+  int loaded_[kMaxLanes];                       // model whose numbers stand in each lane
   AlignedDoubles action_, state_, drive_, work_;
   Outcome outcome_;
 };

@@ -40,16 +40,26 @@ ShapeNumbers<double> numbers_of(const Shape& shape) noexcept {
 }
 
 BodyNumbers<double> numbers_of(const Body& body) noexcept {
-  return {numbers_of(body.origin), numbers_of(body.direction.unit_vector()), numbers_of(body.centre),
-          body.mass,               body.inertia,                             body.viscous,
-          body.spring.stiffness,   body.spring.rest,                         body.initial,
+  return {numbers_of(body.origin),
+          numbers_of(body.direction.unit_vector()),
+          numbers_of(body.centre),
+          body.mass,
+          body.inertia,
+          body.viscous,
+          body.spring.stiffness,
+          body.spring.rest,
+          body.initial,
           body.dry};
 }
 
 ContactNumbers<double> numbers_of(const Contact& contact) noexcept {
   const Felt& felt = contact.felt;
-  return {numbers_of(contact.shape_a), numbers_of(contact.shape_b), contact.friction,
-          felt.stiffness, felt.exponent, felt.damping};
+  return {numbers_of(contact.shape_a),
+          numbers_of(contact.shape_b),
+          contact.friction,
+          felt.stiffness,
+          felt.exponent,
+          felt.damping};
 }
 
 }  // namespace
@@ -87,8 +97,7 @@ ActionNumbers<double> numbers_of(const Mechanism& mechanism, const Plan& plan) n
   numbers.finger_stiffness = model.finger.stiffness;
   numbers.finger_damping = model.finger.damping;
   for (int i = 0; i < plan.body_count; ++i) numbers.body[i] = numbers_of(model.bodies[i]);
-  for (int c = 0; c < plan.contact_count; ++c)
-    numbers.contact[c] = numbers_of(model.contacts[plan.contact[c].number]);
+  for (int c = 0; c < plan.contact_count; ++c) numbers.contact[c] = numbers_of(model.contacts[plan.contact[c].number]);
   return numbers;
 }
 

@@ -1,4 +1,4 @@
-// The one-step problem when friction starts or stops: solver/assemble_rows.hpp in lanes, operation by operation. 
+// The one-step problem when friction starts or stops: solver/assemble_rows.hpp in lanes, operation by operation.
 #pragma once
 
 #include "friction.hpp"

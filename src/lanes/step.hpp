@@ -37,8 +37,7 @@ void update_velocity(const Batch& batch, Work<T>& work) noexcept {
     T& guess = work.guess[contact.row];
     guess = zero;
     if (!work.acts[c]) continue;
-    const T left =
-        work.felt_impulse[c] - work.felt_loss[c] * along(contact, work.contact[c].normal_lever, work.change);
+    const T left = work.felt_impulse[c] - work.felt_loss[c] * along(contact, work.contact[c].normal_lever, work.change);
     guess = select((work.felt_impulse[c] > zero) & (zero < left), left, zero);
   }
   if (batch.settings->push == Push::piston)
@@ -64,7 +63,8 @@ Movement<T> measure_movement(const Batch& batch, const Work<T>& work) noexcept {
     whole += mass * work.end_velocity[i] * work.end_velocity[i];
   }
   const auto is_something = whole > zero;
-  return {select(is_something, sqrt(last / whole), zero), select(is_something, sqrt(last / action.total_mass) / h, zero),
+  return {select(is_something, sqrt(last / whole), zero),
+          select(is_something, sqrt(last / action.total_mass) / h, zero),
           select(is_something, sqrt(since_placed / whole), zero)};
 }
 
@@ -148,7 +148,8 @@ T relaxed(const Batch& batch, const Mask<T>& which, const ContactNumbers<T>& fel
   felt.damping.store_unaligned(damping);
   compression.store_unaligned(left);
   for (int l = 0; l < Work<T>::kLanes; ++l)
-    left[l] = wanted[l] ? batch.calls->relax(batch.settings->time_step, stiffness[l], exponent[l], damping[l], left[l]) : 0;
+    left[l] =
+        wanted[l] ? batch.calls->relax(batch.settings->time_step, stiffness[l], exponent[l], damping[l], left[l]) : 0;
   return T::load_unaligned(left);
 }
 

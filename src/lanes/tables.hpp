@@ -5,11 +5,11 @@ namespace erard::lanes {
 
 /// Each as the sum of two numbers, the second below the last bit of the first.
 struct Tables {
-  static constexpr int kPoints = 128;  // an octave
-  double inverse[kPoints];             // of a point of each interval of [kLeast, 2 kLeast)
-  double log[kPoints], log_rest[kPoints];            // -ln(inverse); the first a multiple of 2^-42
+  static constexpr int kPoints = 128;                      // an octave
+  double inverse[kPoints];                                 // of a point of each interval of [kLeast, 2 kLeast)
+  double log[kPoints], log_rest[kPoints];                  // -ln(inverse); the first a multiple of 2^-42
   double exponential[kPoints], exponential_rest[kPoints];  // 2^(i / kPoints)
-  static constexpr int kTurns = 64;  // angles a radian, up to kMostAngle
+  static constexpr int kTurns = 64;                        // angles a radian, up to kMostAngle
   static constexpr double kMostAngle = 1;
   double sine[kTurns + 2], sine_rest[kTurns + 2], cosine[kTurns + 2], cosine_rest[kTurns + 2];
 };

@@ -72,7 +72,8 @@ struct Work {
   int power_count;
   double base[kMaxPowers + kMaxLanes], exponent[kMaxPowers + kMaxLanes], power[kMaxPowers + kMaxLanes];
   int power_of[kMaxPowers];  // of each its place among the numbers of `raised`
-  T raised[2 * kMaxContacts];  // of each contact the power of its compression at the end, or the middle; then at the start
+  // of each contact the power of its compression at the end, or the middle; then at the start
+  T raised[2 * kMaxContacts];
   T end[kMaxContacts];
   Mask<T> is_acting[kMaxContacts];
   bool acts[kMaxContacts];  // in any lane

@@ -183,9 +183,10 @@ class Keyboard {
   template <typename Observer>
   void play(int k, const DriveSample& input, Workspace& work, Observer&& observer) noexcept {
     const Turn turn = begin_turn(k, input);
-    end_turn(k, input,
-             erard::tick(mechanism_[turn.model], settings_, turn.input, *turn.state, work,
-                         [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); }));
+    end_turn(
+        k, input,
+        erard::tick(mechanism_[turn.model], settings_, turn.input, *turn.state, work,
+                    [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); }));
   }
 
   /// Load up to which a piston leaves the key alone where it is; none does where something else drives it.

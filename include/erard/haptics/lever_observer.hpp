@@ -24,8 +24,8 @@
 namespace erard {
 
 struct LeverObserverSettings {
-  double lever_mass =
-      0.1;  // m, effective at the finger; told a quarter too heavy it costs a quarter of the margin [kg] > 0
+  // m, effective at the finger; told a quarter too heavy it costs a quarter of the margin [kg] > 0
+  double lever_mass = 0.1;
   double memory = 0.7;         // q, 0 <= q < 1
   int delay_periods = 1;       // n, between a sample and its force, 0 .. kMaxDelay
   double actuator_lag = 3e-4;  // tau [s] >= 0

@@ -20,7 +20,8 @@ namespace erard {
 class LanePlayer {
  public:
   /// Called after each internal step of a key as observer(context, key, state, report, force).
-  using Observer = void (*)(void* context, int key, const State& state, const StepReport& report, double force) noexcept;
+  using Observer = void (*)(void* context, int key, const State& state, const StepReport& report,
+                            double force) noexcept;
 
   /// @param mechanisms  by Turn::model; they must outlive the player
   /// @param set         must be available
