@@ -118,27 +118,32 @@ void read_limits(YamlSection section, GuardSettings& guard) {
   section.finish();
 }
 
+void read_voice_coil(YamlSection section, VoiceCoilSettings& coil) {
+  coil.force_constant = number(section, "force_constant_N_per_A", kPositive);
+  coil.max_current = number(section, "max_current_A", kPositive);
+  coil.continuous_current = number(section, "continuous_current_A", up_to(coil.max_current));
+  coil.thermal_time = number(section, "thermal_time_s", kPositive);
+  section.finish();
+}
+
+void read_mr_brake(YamlSection section, MrBrakeSettings& brake) {
+  brake.drag = number(section, "drag_N", kNotNegative);
+  brake.yield_force = number(section, "yield_force_N", kPositive);
+  brake.saturation_current = number(section, "saturation_current_A", kPositive);
+  brake.max_current = number(section, "max_current_A", kPositive);
+  brake.response_time = number(section, "response_s", kPositive);
+  brake.standstill_speed = number(section, "standstill_speed_m_per_s", kNotNegative);
+  section.finish();
+}
+
+/// Both kinds are read whichever is in use, so that a program's option may choose the other one.
 void read_actuator(YamlSection section, ActuatorSettings& actuator) {
   const std::string kind = section.choice("kind", {"none", "voice_coil", "mr_brake"});
-  if (kind == "voice_coil") {
-    VoiceCoilSettings& coil = actuator.voice_coil;
-    actuator.kind = ActuatorKind::voice_coil;
-    coil.force_constant = number(section, "force_constant_N_per_A", kPositive);
-    coil.max_current = number(section, "max_current_A", kPositive);
-    coil.continuous_current = number(section, "continuous_current_A", up_to(coil.max_current));
-    coil.thermal_time = number(section, "thermal_time_s", kPositive);
-  } else if (kind == "mr_brake") {
-    MrBrakeSettings& brake = actuator.mr_brake;
-    actuator.kind = ActuatorKind::mr_brake;
-    brake.drag = number(section, "drag_N", kNotNegative);
-    brake.yield_force = number(section, "yield_force_N", kPositive);
-    brake.saturation_current = number(section, "saturation_current_A", kPositive);
-    brake.max_current = number(section, "max_current_A", kPositive);
-    brake.response_time = number(section, "response_s", kPositive);
-    brake.standstill_speed = number(section, "standstill_speed_m_per_s", kNotNegative);
-  } else {
-    actuator.kind = ActuatorKind::none;
-  }
+  actuator.kind = kind == "none"         ? ActuatorKind::none
+                  : kind == "voice_coil" ? ActuatorKind::voice_coil
+                                         : ActuatorKind::mr_brake;
+  read_voice_coil(section.section("voice_coil"), actuator.voice_coil);
+  read_mr_brake(section.section("mr_brake"), actuator.mr_brake);
   section.finish();
 }
 
