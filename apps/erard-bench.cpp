@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -22,7 +21,7 @@
 #include "bench/results.hpp"
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
-#include "erard/version.hpp"
+#include "program.hpp"
 
 namespace {
 
@@ -30,7 +29,6 @@ using namespace erard;
 
 constexpr double kSlowestRate = 400, kFastestRate = 50000;  // [Hz] of the output, design range of the scheme
 constexpr int kMostKeys = 256, kMostThreads = 64;
-constexpr int kInterrupted = 130;
 
 std::atomic<bool> is_interrupted{false};
 
@@ -224,14 +222,7 @@ int run(Options& o) {
   const bool is_kept = !o.margin || keeps_margin(results.rows, *o.margin);
   if (std::fflush(stdout) != 0) throw std::runtime_error("the table could not be written to the standard output");
   if (!results.is_complete) return kInterrupted;
-  return is_kept ? 0 : 1;
-}
-
-/// A message on one line, whatever names it quotes.
-void complain(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  fmt::print(stderr, "{}\n", message);
+  return is_kept ? kDone : kFailed;
 }
 
 }  // namespace
@@ -239,7 +230,6 @@ void complain(std::string message) {
 int main(int argc, char** argv) {
   CLI::App app("Measures how long this machine takes for scenes on the grand action, and how exact it is at that.",
                "erard-bench");
-  app.set_version_flag("--version", fmt::format("erard-bench {}", kVersion));
   app.footer(
       "Scenes:" + scene_names() +
       "\n\nA tick is one period of all keys, a step one internal step of one key. Without options it takes about "
@@ -247,21 +237,5 @@ int main(int argc, char** argv) {
       "interrupted (what\nwas measured is kept).");
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    complain(fmt::format("erard-bench: {}; see erard-bench --help", error.what()));
-    return 2;
-  }
-  try {
-    return run(options);
-  } catch (const erard::InputError& error) {
-    complain(error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    complain(fmt::format("erard-bench: {}", error.what()));
-    return 1;
-  }
+  return erard::run_program(app, argc, argv, [&] { return run(options); });
 }

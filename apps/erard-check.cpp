@@ -3,26 +3,23 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <future>
 #include <string>
 #include <vector>
 
 #include "erard/device/error.hpp"
 #include "erard/device/machine_check.hpp"
-#include "erard/version.hpp"
+#include "program.hpp"
 
 namespace {
 
 using namespace erard;
 
-constexpr int kUnfit = 1, kBadInput = 2, kInterrupted = 130;
 constexpr const char* kLcmGroup = "239.255.76.67";  // LCM's default; 239.255/16 is where its kin are
 
 std::atomic<bool> is_interrupted{false};
@@ -106,7 +103,7 @@ int run(const Options& o) {
                        : worst == Verdict::warn ? "This machine runs the loop; it could do so better."
                                                 : "This machine is not fit for the loop as it is.");
   if (std::fflush(stdout) != 0) throw std::runtime_error("the table could not be written to the standard output");
-  return worst == Verdict::fail ? kUnfit : 0;
+  return worst == Verdict::fail ? kFailed : kDone;
 }
 
 }  // namespace
@@ -114,7 +111,6 @@ int run(const Options& o) {
 int main(int argc, char** argv) {
   CLI::App app("Checks whether this machine is fit for the real-time loop: settings, rights, waking, messages.",
                "erard-check");
-  app.set_version_flag("--version", fmt::format("erard-check {}", kVersion));
   app.footer(
       "Waking: lateness of an empty loop's wake-ups; p99.9 up to a tenth of the period is ok, up to 3/10 a warning.\n"
       "Messages: a datagram to another thread and back over loopback multicast, as LCM sends it; p99.9 up to half a\n"
@@ -122,21 +118,5 @@ int main(int argc, char** argv) {
       "Exit codes: 0 fit, warnings included; 1 something fails or cannot be measured; 2 bad option; 130 interrupted.");
   Options options;
   add_options(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "erard-check: {}; see erard-check --help\n", error.what());
-    return kBadInput;
-  }
-  try {
-    return run(options);
-  } catch (const erard::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return kBadInput;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "erard-check: {}\n", error.what());
-    return kUnfit;
-  }
+  return erard::run_program(app, argc, argv, [&] { return run(options); });
 }
