@@ -50,7 +50,6 @@ void add_options(CLI::App& app, Request& request) {
   request.rest_mm = settings.rest * 1e3;
   request.press_mm = settings.press * 1e3;
 
-  app.set_version_flag("--version", std::string("erard-import ") + std::string(erard::kVersion));
   app.add_option("INPUT", request.input, "Recording, CSV with t_s [s] and key_front_mm [mm]")
       ->required()
       ->type_name("FILE");
