@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <random>
 #include <vector>
 
 #include "erard/device/error.hpp"
+#include "erard/haptics/fault.hpp"
 #include "support/udp.hpp"
 
 namespace erard {
@@ -291,6 +293,20 @@ TEST(Receiver, SurvivesRandomDatagrams) {
     }
     return got.sequence == 77;
   }));
+}
+
+TEST(HostStatus, NamesTheBitsOfFaultsAsTheRendererDoes) {
+  constexpr std::array<std::int32_t, kFaultCount> bits{
+      host_status_t::kDuplicate,        host_status_t::kReordered,      host_status_t::kGap,
+      host_status_t::kForeignPublisher, host_status_t::kStaleTime,      host_status_t::kWrongSize,
+      host_status_t::kNotFiniteInput,   host_status_t::kOutOfRange,     host_status_t::kImplausibleSpeed,
+      host_status_t::kNoInput,          host_status_t::kRealigned,      host_status_t::kStepNotFinite,
+      host_status_t::kStepNotConverged, host_status_t::kPassivityActed, host_status_t::kForceLimited,
+      host_status_t::kSlewLimited,      host_status_t::kCurrentLimited, host_status_t::kThermalLimited,
+      host_status_t::kCannotPush,       host_status_t::kWrongType,      host_status_t::kOverflow,
+      host_status_t::kPublishFailed,    host_status_t::kPeriodMissed,   host_status_t::kRecordingStopped,
+  };
+  for (int i = 0; i < kFaultCount; ++i) EXPECT_EQ(bits[static_cast<std::size_t>(i)], 1 << i) << fault_name(i);
 }
 
 }  // namespace
