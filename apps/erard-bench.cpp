@@ -21,6 +21,7 @@
 #include "bench/results.hpp"
 #include "erard/device/error.hpp"
 #include "erard/device/output_file.hpp"
+#include "erard/device/real_time.hpp"
 #include "program.hpp"
 
 namespace {
@@ -153,12 +154,12 @@ class Progress {
 /// Scheduling and CPU of this run, in words. Throws std::runtime_error when what was asked for is refused.
 /// @param cpus  the first is this thread's, the others are for more threads
 std::string settle(const std::vector<int>& cpus, bool is_real_time) {
-  const bool is_pinned = !cpus.empty() && bench::pin_to(cpus.front());
+  const bool is_pinned = !cpus.empty() && request_cpu(cpus.front()).is_granted;
   const std::string where = is_pinned ? fmt::format("pinned to CPU {}", cpus.front()) : "not pinned to a CPU (refused)";
   if (!is_real_time) return where + ", ordinary scheduling";
-  std::string refused;
-  for (const std::string& each : bench::request_real_time()) refused += (refused.empty() ? "" : "; ") + each;
-  if (!refused.empty()) throw std::runtime_error("--realtime: " + refused);
+  for (const Grant& grant : {request_fifo(RealTimeRequest{}.priority), request_memory_lock()})
+    if (!grant.is_granted)
+      throw std::runtime_error(fmt::format("--realtime: {}: {}; {}", grant.what, grant.granted, grant.remedy));
   return where + ", SCHED_FIFO, memory locked";
 }
 

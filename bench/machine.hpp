@@ -22,10 +22,4 @@ Circumstances look_around();
 /// CPUs that this process may use, the last first; empty when it is not told.
 std::vector<int> usable_cpus();
 
-/// Keeps this thread on one CPU. @return whether that was granted
-bool pin_to(int cpu);
-
-/// Asks for SCHED_FIFO and for locked memory. @return what was refused, each with its remedy; empty: all granted
-std::vector<std::string> request_real_time();
-
 }  // namespace erard::bench
