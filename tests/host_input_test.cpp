@@ -103,6 +103,7 @@ TEST_P(HostInputAtEitherPace, AMomentaryJumpIsNotBelieved) {
         sender.publish(kPositionsChannel, p);
       },
       [&] { return device_->status().dropped_implausible_speed > before + 40; });
+  trust_the_finger();
   finish({Fault::implausible_speed});
   expect_undisturbed();
 }
@@ -193,6 +194,7 @@ TEST_F(HostInput, TheFragmentsThatKillLcmsLibraryDoNothing) {
         sender.publish(kPositionsChannel, p);
       },
       [&] { return device_->status().dropped_by_kernel >= before + 200; });
+  trust_the_finger();
   finish({});
   expect_undisturbed();
 }
@@ -208,6 +210,7 @@ TEST_F(HostInput, ASecondDeviceIsNotHeardWhileTheFirstSpeaks) {
         sender.publish(kPositionsChannel, p);
       },
       [&] { return device_->status().dropped_foreign_publisher > 200; });
+  trust_the_finger();
   finish({Fault::foreign_publisher});
   expect_undisturbed();
 }

@@ -12,6 +12,10 @@ using test::RecordedPeriod;
 /// A forte stroke through a spoilt stream, and one through a good one.
 class HostStream : public test::DisturbedHost {
  protected:
+  // Share of the stroke's force that is off where samples are guessed. Measured: 0.15 to 0.2 with one in ten lost, 0.27
+  // with every other one; 1 were no force at all.
+  static constexpr double kMostLost = 0.4;
+
   void play_through(const Transmit& transmit) {
     start_host();
     device_->play(test::rest(0.1));
@@ -25,33 +29,30 @@ class HostStream : public test::DisturbedHost {
     end_disturbance();
   }
 
-  /// What would have come: a message whose time it was when nothing came, each once, in order.
-  std::vector<double> repaired(const RecordedPeriod& period) {
-    std::int64_t newest = next_;  // of what has come by now
-    for (const positions_t& p : period.arrived) newest = std::max(newest, p.sequence);
-    if (next_ == 0) next_ = newest;
-    std::vector<double> positions;
-    if (newest > 0)
-      for (; next_ <= newest; ++next_) positions.push_back(samples_[static_cast<std::size_t>(next_ - 1)].position);
-    return positions;
+  /// Holes in the sequence, but for those of silences: behind one begins a stream of its own.
+  std::int64_t missing_messages() const {
+    std::int64_t missing = 0, last = 0, last_time = 0;
+    const double timeout = 1e9 * session_.rendering().watch.timeout;  // [ns]
+    for (const RecordedPeriod& period : session_.periods)
+      for (const positions_t& p : period.arrived) {
+        if (last > 0 && static_cast<double>(period.time() - last_time) <= timeout) missing += p.sequence - last - 1;
+        last = p.sequence;
+        last_time = period.time();
+      }
+    return missing;
   }
 
-  /// The force in the spoilt stroke against that of the stroke as it was played.
-  void expect_force_within(double rms) {
-    const test::Difference spoilt = test::difference(session_, reference_.force, window_);
+  /// The force in the spoilt stroke against that of the stroke as it was played. @param share  of its rms
+  void expect_force_within(double share) {
+    const test::Difference spoilt = test::difference(session_, reference_, window_);
     RecordProperty("spoilt_rms_N", std::to_string(spoilt.rms));
-    std::printf("spoilt rms %.3g N, largest %.3g N\n", spoilt.rms, spoilt.largest);
-    EXPECT_LT(spoilt.rms, rms);
-    EXPECT_GT(spoilt.rms, 0);
+    std::printf("spoilt rms %.3g N of %.3g N, largest %.3g N\n", spoilt.rms, spoilt.reference_rms, spoilt.largest);
+    EXPECT_LE(spoilt.rms, share * spoilt.reference_rms);
   }
   void finish_stroke(std::initializer_list<Fault> faults) {
-    samples_ = device_->samples();
-    truth_ = [this](const RecordedPeriod& period) { return repaired(period); };
+    trust_the_finger();
     finish(faults);
   }
-
-  std::int64_t next_ = 0;  // sequence
-  std::vector<test::Sample> samples_;
 };
 
 TEST_F(HostStream, OneInTenLostIsGuessedAndCounted) {
@@ -64,8 +65,11 @@ TEST_F(HostStream, OneInTenLostIsGuessedAndCounted) {
   });
   finish_stroke({Fault::gap});
   EXPECT_GT(lost, 50);
-  EXPECT_EQ(device_->status().dropped_lost, lost);
-  expect_force_within(0.3);
+  // Of the recording, since a machine that keeps the host waiting may lose more; what lies before a silence does not
+  // count, so it may also be less.
+  EXPECT_EQ(device_->status().dropped_lost, missing_messages());
+  EXPECT_GT(2 * missing_messages(), lost);
+  expect_force_within(kMostLost);
 }
 
 TEST_F(HostStream, WhatComesTwiceCountsOnce) {
@@ -75,7 +79,7 @@ TEST_F(HostStream, WhatComesTwiceCountsOnce) {
   });
   finish_stroke({Fault::duplicate});
   EXPECT_GT(device_->status().dropped_duplicate, 500);
-  expect_force_within(0.3);
+  expect_force_within(0.05);  // none, but where both did not fit into the ring
 }
 
 TEST_F(HostStream, WhatWasOvertakenIsNotUsed) {
@@ -90,7 +94,7 @@ TEST_F(HostStream, WhatWasOvertakenIsNotUsed) {
   });
   finish_stroke({Fault::reordered});
   EXPECT_GT(device_->status().dropped_reordered, 200);
-  expect_force_within(0.3);
+  expect_force_within(kMostLost);
 }
 
 /// A hundred thousand messages of somebody else a second.
@@ -130,17 +134,18 @@ class Flood {
 TEST_F(HostStream, AFloodDoesNotStopTheLoop) {
   start_as({"--best-effort"});  // a recording would be one of the flood
   press();
+  long sent = 0;
   {
     const Flood flood;
     const std::int64_t before = device_->force().sequence;
     ASSERT_TRUE(eventually([&] { return flood.sent() > 50'000 && device_->force().sequence > before + 1000; }));
-    RecordProperty("sent", std::to_string(flood.sent()));
+    sent = flood.sent();
   }
   expect_whole_again();
-  const host_status_t status = device_->status();
-  std::printf("foreign %ld overflow %ld kernel %ld\n", status.dropped_foreign_publisher, status.dropped_overflow,
-              status.dropped_by_kernel);
-  EXPECT_GT(status.dropped_foreign_publisher + status.dropped_overflow + status.dropped_by_kernel, 40'000);
+  EXPECT_TRUE(eventually([&] {  // none of them vanished
+    const host_status_t status = device_->status();
+    return status.dropped_foreign_publisher + status.dropped_overflow + status.dropped_by_kernel >= sent;
+  }));
   release_and_play_again();
   const test::Outcome outcome = stop();
   EXPECT_NE(outcome.out.find("foreign_publisher"), std::string::npos) << outcome.out;

@@ -47,6 +47,9 @@ HostPeriod::HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& po
   commands_.actuator = settings.rendering.actuator.kind == ActuatorKind::mr_brake ? actuator_commands_t::kMrBrake
                                                                                   : actuator_commands_t::kVoiceCoil;
   static_cast<void>(sender_.publish(settings_.link.forces_channel.c_str(), forces_));
+  for (int i = 0; i < kRoom && positions_.take(arrived_[0]); ++i) {
+  }
+  before_ = positions_.counts();
 }
 
 bool HostPeriod::operator()(const Period& period) noexcept {
@@ -83,7 +86,7 @@ void HostPeriod::take_positions() noexcept {
     }
     message_[static_cast<std::size_t>(arrived_count_++)] = position_message(p);
   }
-  const ReceiverCounts counts = positions_.counts();
+  const ReceiverCounts counts = received();
   const std::int64_t malformed = counts.wrong_type + counts.wrong_size;
   if (malformed > malformed_) trouble_ |= Fault::wrong_type;
   if (counts.overflow > overflow_) trouble_ |= Fault::overflow;

@@ -77,23 +77,48 @@ int expect_fades_in_silence(const RecordedSession& session) {
   return zero;
 }
 
+Meant::Meant(const RecordedSession& session, std::int64_t publisher, std::vector<Sample> samples)
+    : publisher_(publisher), samples_(std::move(samples)), came_(samples_.size()) {
+  std::int64_t newest = 0;
+  for (const RecordedPeriod& period : session.periods)
+    for (const positions_t& p : period.arrived) {
+      if (p.publisher_id != publisher_ || p.sequence <= newest) continue;
+      newest = p.sequence;
+      came_.at(static_cast<std::size_t>(newest - 1)) = true;
+    }
+}
+
+std::vector<Sample> Meant::operator()(const RecordedPeriod& period) {
+  constexpr std::int64_t kTransit = 100'000;  // [ns] of a message that is not kept waiting, and less than the phase
+  for (const positions_t& p : period.arrived)
+    if (p.publisher_id == publisher_) newest_ = std::max(newest_, p.sequence);
+  const auto is_there = [&](std::size_t i) {
+    return came_[i] ? static_cast<std::int64_t>(i) < newest_ : samples_[i].time_ns + kTransit <= period.time();
+  };
+  std::vector<Sample> now;
+  while (told_ < samples_.size() && is_there(told_)) now.push_back(samples_[told_++]);
+  return now;
+}
+
 Computed undisturbed(const RecordedSession& session, Window window, const Truth& truth) {
-  constexpr std::int64_t kTransit = 1'000'000;  // [ns] longer than that of true messages: the next one is not older
+  constexpr int kSettling = 100;  // [periods] recovery_samples, a jump of four of them, and the fade
   Renderer renderer(session.parts.action.model, session.parts.action.roles, session.rendering());
   Computed computed;
   std::int64_t sequence = 0, offset = 0;
   bool was_inside = false;
+  int whole = 0;  // periods in a row
   for (const RecordedPeriod& period : session.periods) {
     std::vector<positions_t> arrived = period.arrived;
+    const std::vector<Sample> meant = truth(period);
     if (window.holds(period.time())) {
       was_inside = true;
       arrived.clear();
-      for (const double position : truth(period)) {
+      for (const Sample& sample : meant) {
         positions_t& p = arrived.emplace_back();
         p.sequence = sequence + static_cast<std::int64_t>(arrived.size());
-        p.device_time_ns = period.time() - kTransit + static_cast<std::int64_t>(arrived.size());
+        p.device_time_ns = sample.time_ns;
         p.key_count = 1;
-        p.position_m[0] = position;
+        p.position_m[0] = sample.position;
       }
     } else if (!arrived.empty()) {
       if (was_inside) offset = sequence + 1 - arrived[0].sequence;
@@ -107,25 +132,28 @@ Computed undisturbed(const RecordedSession& session, Window window, const Truth&
       messages.push_back(position_message(p));
     }
     const PeriodOutput& out = renderer.period({period.time(), messages});
+    whole = out.key[0].fade == 1 ? whole + 1 : 0;
     computed.force.push_back(out.key[0].force);
+    computed.is_settled.push_back(whole > kSettling);
     for (const HammerEvent& blow : out.blow) computed.blow.push_back(blow.speed);
   }
   return computed;
 }
 
-Difference difference(const RecordedSession& session, const std::vector<double>& reference, Window window) {
+Difference difference(const RecordedSession& session, const Computed& reference, Window window) {
   Difference result;
-  double square = 0;
+  double square = 0, reference_square = 0;
   int count = 0;
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    if (!window.holds(session.periods[i].time())) continue;
-    const double off = std::abs(session.periods[i].force() - reference[i]);
+  for (std::size_t i = 0; i < reference.force.size(); ++i) {
+    if (!window.holds(session.periods[i].time()) || !reference.is_settled[i]) continue;
+    const double off = std::abs(session.periods[i].force() - reference.force[i]);
     result.largest = std::max(result.largest, off);
     square += off * off;
+    reference_square += reference.force[i] * reference.force[i];
     ++count;
   }
-  result.rms = count > 0 ? std::sqrt(square / count) : HUGE_VAL;
-  return result;
+  if (count == 0) return {HUGE_VAL, HUGE_VAL, 0};
+  return {result.largest, std::sqrt(square / count), std::sqrt(reference_square / count)};
 }
 
 }  // namespace erard::test

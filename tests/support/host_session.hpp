@@ -45,12 +45,36 @@ struct Window {
   bool holds(std::int64_t time) const { return time >= from && time <= to; }
 };
 
-/// Positions that should have come in a period, in order [m].
-using Truth = std::function<std::vector<double>(const RecordedPeriod&)>;
+/// A sample as it was taken, whatever became of its message.
+struct Sample {
+  std::int64_t time_ns = 0;
+  double position = 0;  // [m]
+};
+
+/// Samples that should have come in a period, in order; asked of every period, one after the other.
+using Truth = std::function<std::vector<Sample>(const RecordedPeriod&)>;
+
+/// What a device meant to tell: each of its samples once, in order. Those whose messages came in order come when they
+/// did: what the machine kept waiting waits here too. The others, never heard or overtaken, come when they were due.
+class Meant {
+ public:
+  /// @param samples  message n told of sample n - 1, or should have
+  Meant(const RecordedSession& session, std::int64_t publisher, std::vector<Sample> samples);
+
+  std::vector<Sample> operator()(const RecordedPeriod& period);
+
+ private:
+  std::int64_t publisher_;
+  std::vector<Sample> samples_;
+  std::vector<bool> came_;   // of each sample: in order
+  std::int64_t newest_ = 0;  // sequence that came so far
+  std::size_t told_ = 0;     // samples
+};
 
 struct Computed {
-  std::vector<double> force;  // of each period [N]
-  std::vector<double> blow;   // speed of each hammer that met its string [m/s]
+  std::vector<double> force;     // of each period [N]
+  std::vector<bool> is_settled;  // of each period: all of the force was there for the last 50 ms
+  std::vector<double> blow;      // speed of each hammer that met its string [m/s]
 };
 
 /// The session once more, with the truth in the window, as if nothing had happened there. Outside of it what arrived is
@@ -60,7 +84,10 @@ Computed undisturbed(const RecordedSession& session, Window window, const Truth&
 /// Of the forces in a window [N]; infinite where there are none.
 struct Difference {
   double largest = 0, rms = 0;
+  double reference_rms = 0;  // of the force as it should have been
 };
-Difference difference(const RecordedSession& session, const std::vector<double>& reference, Window window);
+/// Where the machine kept every message waiting for longer than the timeout, the force as it should have been fades too:
+/// until it has settled again, nothing can be told.
+Difference difference(const RecordedSession& session, const Computed& reference, Window window);
 
 }  // namespace erard::test

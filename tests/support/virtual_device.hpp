@@ -11,14 +11,9 @@
 #include <vector>
 
 #include "erard/device/link.hpp"
+#include "host_session.hpp"
 
 namespace erard::test {
-
-/// A sample as it was taken, whatever became of its message.
-struct Sample {
-  std::int64_t time_ns = 0;
-  double position = 0;  // [m]
-};
 
 /// What came back.
 struct Heard {

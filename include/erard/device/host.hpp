@@ -58,7 +58,7 @@ class Host {
   DurationHistogram wake_lateness() const noexcept { return loop_.wake_lateness(); }
   DurationHistogram work_time() const noexcept { return loop_.work_time(); }
   DurationHistogram latency() const noexcept { return period_ ? period_->latency() : DurationHistogram{}; }
-  ReceiverCounts received() const noexcept { return receiver_.counts(); }
+  ReceiverCounts received() const noexcept { return period_ ? period_->received() : ReceiverCounts{}; }
   std::int64_t dropped_by_kernel() const noexcept { return receiver_.listener().dropped_by_kernel(); }
   RecorderStatus recorder() const { return recorder_.status(); }
   const DeviceSettings& settings() const noexcept { return settings_; }

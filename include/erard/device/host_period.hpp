@@ -53,6 +53,7 @@ class HostPeriod {
  public:
   /// @param is_steered  the loop follows a clock of its own, to be kept in step with the device
   /// The parts must outlive it. Publishes once, so that LCM has taken its memory: call it from the real-time thread.
+  /// Positions that came before are dropped, uncounted: the action begins with what is so now.
   HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& positions, Sender& sender, Renderer& renderer,
              Recorder& recorder, PeriodicLoop<>& loop, bool is_steered);
 
@@ -65,6 +66,7 @@ class HostPeriod {
   HostNews news() const noexcept { return news_shared_.load(); }              // from slower threads
   KeyView view() const noexcept { return view_shared_.load(); }               // likewise, another key every time
   DurationHistogram latency() const noexcept { return latency_.snapshot(); }  // sample taken to force sent
+  ReceiverCounts received() const noexcept { return positions_.counts() - before_; }
 
   std::int64_t publisher_id() const noexcept { return publisher_; }
 
@@ -103,6 +105,7 @@ class HostPeriod {
   std::int64_t position_time_ns_ = 0;          // its device time [ns]
   std::int64_t missed_ = 0;                    // periods, as of the last look
   std::int64_t malformed_ = 0, overflow_ = 0;  // messages, likewise
+  ReceiverCounts before_;                      // what the receiver did before the first period
   forces_t forces_;
   actuator_commands_t commands_;
   hammer_event_t blow_;

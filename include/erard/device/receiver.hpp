@@ -26,6 +26,10 @@ struct ReceiverCounts {
   std::int64_t wrong_type = 0;  // another type on the channel, by its fingerprint
   std::int64_t wrong_size = 0;
   std::int64_t overflow = 0;  // good, but there was no room: the reader did not come for kRoom messages
+
+  friend ReceiverCounts operator-(const ReceiverCounts& a, const ReceiverCounts& b) noexcept {
+    return {a.accepted - b.accepted, a.wrong_type - b.wrong_type, a.wrong_size - b.wrong_size, a.overflow - b.overflow};
+  }
 };
 
 /// Receives messages of one type, all of them, in order of arrival; what they say is not judged here.
