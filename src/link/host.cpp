@@ -124,18 +124,19 @@ void Host::work() {
   const bool follows_messages = options_.pace == HostPace::messages;
   period_ = std::make_unique<HostPeriod>(settings_, receiver_, force_sender_, *renderer_, recorder_, loop_,
                                          !follows_messages);
-  prctl(PR_SET_NAME, "erard-loop");  // from here on: no heap, no lock
+  prctl(PR_SET_NAME, "erard-loop");  // until it has another name: no heap, no lock
   begun_.set_value();
-  if (!follows_messages) {
+  if (follows_messages) {
+    // a message that is late is waited for: half a period, then the period goes without
+    const std::int64_t patience = loop_.settings().period_ns / 2;
+    summary_ = loop_.run(*period_, [this, patience](std::int64_t due) noexcept {
+      receiver_.wait(due + patience);
+      return MonotonicClock{}.now();
+    });
+  } else {
     summary_ = loop_.run(*period_);
-    return;
   }
-  // a message that is late is waited for: half a period, then the period goes without
-  const std::int64_t patience = loop_.settings().period_ns / 2;
-  summary_ = loop_.run(*period_, [this, patience](std::int64_t due) noexcept {
-    receiver_.wait(due + patience);
-    return MonotonicClock{}.now();
-  });
+  prctl(PR_SET_NAME, "erard-ending");
 }
 
 HostNews Host::news() const {
