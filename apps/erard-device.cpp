@@ -51,11 +51,11 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--best-effort", o.is_best_effort, "run without real time where the machine refuses it");
   app.add_option("--record", o.record,
                  "keep the whole session in this file, an LCM log; erard-replay --verify repeats it");
-  app.add_option("--faults", o.fault_folder,
-                 "folder for the last seconds before each fault, LCM logs; made when needed")
+  app.add_option(
+         "--faults", o.fault_folder,
+         "folder for the last seconds before each fault, LCM logs; made when needed; an empty name: none are kept")
       ->capture_default_str();
-  app.add_option("--duration", o.duration, "end after so many seconds (default: at Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--duration", o.duration, "end after so many seconds, at most 1e6 (default: at Ctrl-C)");
 }
 
 /// To the person at the screen. That may be gone: the host does not stop for it.
@@ -153,6 +153,14 @@ void report(const Host& host, const LoopSummary& run, double elapsed) {
   }
 }
 
+/// What the parser does not see: NaN is no number to it, and no file has an empty name.
+void check(const CLI::App& app, const Options& o) {
+  constexpr double kLongest = 1e6;  // [s] 11 days; a time point counts to 292 years
+  if (o.duration && !(*o.duration > 0 && *o.duration <= kLongest))
+    throw InputError(fmt::format("--duration = {}, must be above 0 and at most {} s", *o.duration, kLongest));
+  if (app.count("--record") > 0 && o.record.empty()) throw InputError("--record: its name is empty, name a file");
+}
+
 int run(const Options& o) {
   const std::filesystem::path config = o.device.empty() || o.action.empty() ? config_dir() : "";
   Session session;
@@ -213,5 +221,8 @@ int main(int argc, char** argv) {
       "takes, 2\nbad input.");
   Options options;
   add_options(app, options);
-  return erard::run_program(app, argc, argv, [&] { return run(options); });
+  return erard::run_program(app, argc, argv, [&] {
+    check(app, options);
+    return run(options);
+  });
 }

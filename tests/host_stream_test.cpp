@@ -44,7 +44,7 @@ class HostStream : public test::DisturbedHost {
 
   /// The force in the spoilt stroke against that of the stroke as it was played. @param share  of its rms
   void expect_force_within(double share) {
-    const test::Difference spoilt = test::difference(session_, reference_, window_);
+    const test::ForceDifference spoilt = test::difference(session_, reference_, window_);
     RecordProperty("spoilt_rms_N", std::to_string(spoilt.rms));
     std::printf("spoilt rms %.3g N of %.3g N, largest %.3g N\n", spoilt.rms, spoilt.reference_rms, spoilt.largest);
     EXPECT_LE(spoilt.rms, share * spoilt.reference_rms);

@@ -50,8 +50,8 @@ class Child {
 
   void send(int signal) const { kill(process_, signal); }
   pid_t process() const { return process_; }
-  std::string out() const { return read_text(out_); }
-  std::string error() const { return read_text(error_); }
+  std::string out() const { return text_of(out_); }
+  std::string error() const { return text_of(error_); }
 
   bool is_running() {
     int status = 0;
@@ -69,6 +69,9 @@ class Child {
   }
 
  private:
+  static std::string text_of(const fs::path& file) {  // a device may have no end
+    return fs::is_regular_file(file) ? read_text(file) : "";
+  }
   static std::vector<char*> pointers(std::vector<std::string>& words) {
     std::vector<char*> all;
     for (std::string& word : words) all.push_back(word.data());

@@ -140,8 +140,8 @@ Computed undisturbed(const RecordedSession& session, Window window, const Truth&
   return computed;
 }
 
-Difference difference(const RecordedSession& session, const Computed& reference, Window window) {
-  Difference result;
+ForceDifference difference(const RecordedSession& session, const Computed& reference, Window window) {
+  ForceDifference result;
   double square = 0, reference_square = 0;
   int count = 0;
   for (std::size_t i = 0; i < reference.force.size(); ++i) {

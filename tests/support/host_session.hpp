@@ -82,12 +82,12 @@ struct Computed {
 Computed undisturbed(const RecordedSession& session, Window window, const Truth& truth);
 
 /// Of the forces in a window [N]; infinite where there are none.
-struct Difference {
+struct ForceDifference {
   double largest = 0, rms = 0;
   double reference_rms = 0;  // of the force as it should have been
 };
 /// Where the machine kept every message waiting for longer than the timeout, the force as it should have been fades too:
 /// until it has settled again, nothing can be told.
-Difference difference(const RecordedSession& session, const Computed& reference, Window window);
+ForceDifference difference(const RecordedSession& session, const Computed& reference, Window window);
 
 }  // namespace erard::test

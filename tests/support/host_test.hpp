@@ -15,12 +15,12 @@
 namespace erard::test {
 
 /// A stroke of the finger in two halves, 2 kHz [m].
-struct Stroke {
+struct PressAndRelease {
   std::vector<double> press, release;
 };
 
 /// The recorded forte: down in 90 ms, to the bottom, up again.
-inline Stroke forte() {
+inline PressAndRelease forte() {
   const Keystroke keystroke = read_keystroke(ERARD_CONFIG_DIR "/keystrokes/forte.csv");
   std::vector<double> all;
   for (double t = keystroke.start(); t <= keystroke.end(); t += 5e-4) all.push_back(keystroke.at(t).value);
@@ -120,7 +120,7 @@ class HostTest : public testing::Test {
   fs::path log() const { return folder_ / "session.lcm"; }
 
   TemporaryFolder folder_;
-  Stroke stroke_ = forte();
+  PressAndRelease stroke_ = forte();
   std::unique_ptr<Child> host_;
   std::unique_ptr<VirtualDevice> device_;
   std::int64_t again_ = 0;  // when the second stroke began
@@ -162,7 +162,7 @@ class DisturbedHost : public HostTest {
                              truth_ ? truth_ : Truth(Meant(session_, device_->publisher(), device_->samples())));
     // One part in a hundred of the stroke's 10 N. Where felts were left behind they still creep; that moves the instants
     // at which the key rattles on its rail, and there the force is another one for a sample.
-    const Difference left = difference(session_, reference_, {again_});
+    const ForceDifference left = difference(session_, reference_, {again_});
     EXPECT_LT(left.rms, 0.1);
     RecordProperty("afterwards_rms_N", std::to_string(left.rms));
     ASSERT_FALSE(reference_.blow.empty());
