@@ -64,9 +64,10 @@ T row_times(const T* W, const T* r, const RowsInPlay& rows) noexcept {
   return pairs < m ? sum + term(pairs) : sum;
 }
 
+/// Bits of clamping by comparisons, also where the impulse is not a number: then it is the second operand that is taken.
 template <typename T>
 T project(const T& bound, const T& impulse) noexcept {
-  return select(impulse > bound, bound, select(impulse < -bound, -bound, impulse));
+  return xsimd::min(bound, xsimd::max(-bound, impulse));
 }
 
 /// Rows along which nothing can move take no part.

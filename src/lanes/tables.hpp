@@ -3,15 +3,18 @@
 
 namespace erard::lanes {
 
-/// Each as the sum of two numbers, the second below the last bit of the first.
+/// A line is what a lane loads at once: two values, each as the sum of two numbers, the second below the last bit of the
+/// first.
+using TableLine = double[4];
+
 struct Tables {
-  static constexpr int kPoints = 128;                      // an octave
-  double inverse[kPoints];                                 // of a point of each interval of [kLeast, 2 kLeast)
-  double log[kPoints], log_rest[kPoints];                  // -ln(inverse); the first a multiple of 2^-42
-  double exponential[kPoints], exponential_rest[kPoints];  // 2^(i / kPoints)
-  static constexpr int kTurns = 64;                        // angles a radian, up to kMostAngle
+  static constexpr int kPoints = 128;          // an octave
+  alignas(32) TableLine logarithm[kPoints];    // -ln(i), first part a multiple of 2^-42; its rest; i; 0. i is the
+                                               // inverse of a point of each interval of [kLeast, 2 kLeast)
+  alignas(32) TableLine exponential[kPoints];  // 2^(i / kPoints), 0
+  static constexpr int kTurns = 64;            // angles a radian, up to kMostAngle
   static constexpr double kMostAngle = 1;
-  double sine[kTurns + 2], sine_rest[kTurns + 2], cosine[kTurns + 2], cosine_rest[kTurns + 2];
+  alignas(32) TableLine turn[kTurns + 2];  // sine, cosine
 };
 
 /// Bits of the least number of the octave in which logarithms are taken, about 0.7.

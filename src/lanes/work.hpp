@@ -10,10 +10,11 @@ namespace erard::lanes {
 template <typename T>
 using Mask = typename T::batch_bool_type;
 
-/// The rule of std::max: where the two compare as equal, or not at all, the first.
+/// The rule of std::max: where the two compare as equal, or not at all, the first. That is what the CPU's own instruction
+/// gives when it is asked the other way round.
 template <typename T>
 T larger(const T& a, const T& b) noexcept {
-  return select(a < b, b, a);
+  return xsimd::max(b, a);
 }
 
 template <typename T>
