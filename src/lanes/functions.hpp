@@ -206,7 +206,7 @@ void turn_by_table(const Tables& tables, const T& angle, Rounded<T>& cosine, Rou
 /// Cosines and sines of several vectors in the lanes wanted; the others are left as they are.
 template <typename T>
 void turn(const Calls& calls, int count, const Mask<T>& is_wanted, const T* angle, T* cosine, T* sine) noexcept {
-  Mask<T> is_asked[kMaxBodies] = {};
+  Mask<T> is_asked[kMaxBodies];
   for (int i = 0; i < count; ++i) {
     is_asked[i] = is_wanted;
     if constexpr (kIsFused<T>) {

@@ -49,7 +49,11 @@ struct PlacedShape {
 
 template <typename T>
 PlacedShape<T> place_shape(bool is_segment, const ShapeNumbers<T>& shape, int body, const Work<T>& work) noexcept {
-  PlacedShape<T> result{is_segment, placed(work, body, shape.centre), {}, shape.half_length, shape.radius};
+  PlacedShape<T> result;  // member by member: braces make the compiler clear all of it first
+  result.is_segment = is_segment;
+  result.centre = placed(work, body, shape.centre);
+  result.half_length = shape.half_length;
+  result.radius = shape.radius;
   if (is_segment) result.along = turned(work, body, shape.direction);
   return result;
 }

@@ -64,7 +64,7 @@ void sweep_rows(const Batch& batch, const Mask<T>& is_wanted, Sweeps<T>& sweeps,
   const Plan& plan = *batch.plan;
   const int n = plan.body_count, m = plan.friction_row_count;
   T solved[kMaxBodies];  // of the lanes that need no sweeps
-  Mask<T> is_fixed[kMaxBodies] = {};
+  Mask<T> is_fixed[kMaxBodies];
   for (int i = 0; i < n; ++i) {
     solved[i] = work.change[i];
     is_fixed[i] = Mask<T>(plan.body[i].is_fixed);
