@@ -25,14 +25,13 @@ Mask<T> is_short(const T& start, const T& end, const T& middle) noexcept {
   return (abs(end - start) <= T(1e-3) * middle) & (start > T(0.0)) & (end > T(0.0));
 }
 
-/// Adds the numbers > 0 among base to those that are raised to a power.
+/// Adds the numbers > 0 among base to those that are raised to a power. The other lanes of the result stay as they are.
 template <typename T>
 void list_powers(const T& base, const T& exponent, T* result, Work<T>& work) noexcept {
   double bases[kMaxLanes], exponents[kMaxLanes];
   base.store_unaligned(bases);
   exponent.store_unaligned(exponents);
   const int place = static_cast<int>(reinterpret_cast<double*>(result) - reinterpret_cast<double*>(work.raised));
-  *result = T(0.0);
   for (int l = 0; l < Work<T>::kLanes; ++l) {
     work.base[work.power_count] = bases[l];
     work.exponent[work.power_count] = exponents[l];
@@ -63,8 +62,14 @@ void find_powers(const Batch& batch, const Mask<T>& is_active, Work<T>& work) no
     const T d0 = larger(start, zero), d1 = larger(end, zero), middle = T(0.5) * (d0 + d1);
     const Mask<T> is_at_middle = was_closed & is_short(start, end, middle);
     const T exponent = action.contact[c].exponent;
+    work.raised[2 * c] = zero;
     list_powers(select(is_acting, select(is_at_middle, middle, d1), zero), exponent, &work.raised[2 * c], work);
-    list_powers(select(is_acting & !is_at_middle, d0, zero), exponent, &work.raised[2 * c + 1], work);
+    // that of the start, once a step: 2 % of a period
+    const Mask<T> is_new = is_acting & !is_at_middle & !work.is_start_raised[c];
+    if (none(is_new)) continue;
+    work.raised[2 * c + 1] = select(work.is_start_raised[c], work.raised[2 * c + 1], zero);
+    work.is_start_raised[c] = work.is_start_raised[c] | is_new;
+    list_powers(select(is_new, d0, zero), exponent, &work.raised[2 * c + 1], work);
   }
   raise<T>(*batch.calls, work.power_count, work.base, work.exponent, work.power);
   double* const results = reinterpret_cast<double*>(work.raised);

@@ -23,6 +23,7 @@ void predict(const Batch& batch, Work<T>& work) noexcept {
   }
   for (int k = 0; k < plan.row_count; ++k) work.guess[k] = T(h) / state.time_step * state.impulse[k];
   for (int r = 0; r < plan.friction_row_count; ++r) work.is_in_play[r] = Mask<T>(false);
+  for (int c = 0; c < plan.contact_count; ++c) work.is_start_raised[c] = Mask<T>(false);
 }
 
 template <typename T>

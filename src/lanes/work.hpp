@@ -76,7 +76,7 @@ struct Work {
   // of each contact the power of its compression at the end, or the middle; then at the start
   T raised[2 * kMaxContacts];
   T end[kMaxContacts];
-  Mask<T> is_acting[kMaxContacts];
+  Mask<T> is_acting[kMaxContacts], is_start_raised[kMaxContacts];
   bool acts[kMaxContacts];  // in any lane
 
   // friction of the step before
