@@ -96,7 +96,8 @@ class Display {
 
  private:
   /// What a person should hear of at once; the others stand in the status messages and in the report.
-  static constexpr Fault kTold = ~(Fault::step_not_converged | Fault::slew_limited | Fault::gap | Fault::realigned);
+  static constexpr Fault kTold =
+      ~(Fault::step_not_converged | Fault::coarser_steps | Fault::slew_limited | Fault::gap | Fault::realigned);
 
   void line(double elapsed, const std::string& text) const {
     say(stderr, "{}{:8.1f} s  {}\n", is_terminal_ ? "\r\033[K" : "", elapsed, text);

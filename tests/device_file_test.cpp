@@ -64,6 +64,7 @@ TEST(DeviceFile, GivesTheDefaultsOfTheStructs) {
   EXPECT_EQ(a.keys, b.keys);
   EXPECT_EQ(a.tick.period, b.tick.period);
   EXPECT_EQ(a.tick.drive, b.tick.drive);
+  EXPECT_EQ(a.max_steps_per_s, b.max_steps_per_s);
   EXPECT_EQ(a.watch.lowest, b.watch.lowest);
   EXPECT_EQ(a.watch.highest, b.watch.highest);
   EXPECT_EQ(a.watch.max_speed, b.watch.max_speed);

@@ -326,7 +326,8 @@ TEST(Keyboard, SharesInAnyOrderOnPoisonedScratchChangeNoBit) {
   const std::vector<Model> models = graded_models();
   const Keystroke forte = test::keystroke("forte");
   const TickSettings settings = settings_of(0);
-  Keyboard whole(models, kModelOfKey, settings), shared(models, kModelOfKey, settings);
+  constexpr int kBudget = 30;  // for three keys; four are played, at times
+  Keyboard whole(models, kModelOfKey, settings, {}, kBudget), shared(models, kModelOfKey, settings, {}, kBudget);
   std::vector<Part> parts(6);
   for (std::size_t k = 0; k < 4; ++k) parts[k] = {&forte, 0.01 * double(k), 0.5};
   const auto work = std::make_unique<Workspace>();
@@ -334,6 +335,7 @@ TEST(Keyboard, SharesInAnyOrderOnPoisonedScratchChangeNoBit) {
   for (int i = 0; i < 1200; ++i) {
     test::sample(parts, whole, inputs);
     whole.tick(inputs);
+    shared.begin_tick(inputs);
     for (int share = 3; share >= 0; --share) {
       // all bits set: NaN in every double, absurd sizes in every matrix
       std::memset(static_cast<void*>(work.get()), 0xff, sizeof(Workspace));
@@ -343,6 +345,46 @@ TEST(Keyboard, SharesInAnyOrderOnPoisonedScratchChangeNoBit) {
     for (std::size_t k = 0; k < 6; ++k) ASSERT_EQ(whole.forces()[k], shared.forces()[k]) << i;
   }
   for (int k = 0; k < 6; ++k) EXPECT_EQ(whole.state(k).impulse, shared.state(k).impulse);
+}
+
+/// Steps in a period of which all keys together took most.
+int most_steps(Keyboard& keyboard, const std::vector<Part>& parts, double duration) {
+  std::vector<DriveSample> inputs;
+  int most = 0;
+  while (keyboard.time() < duration) {
+    test::sample(parts, keyboard, inputs);
+    int steps = 0;
+    keyboard.tick(inputs, [&](int, const State&, const StepReport&, double) noexcept { ++steps; });
+    most = std::max(most, steps);
+  }
+  return most;
+}
+
+TEST(Keyboard, TakesNoMoreStepsThanItsBudgetHoweverManyKeysArePlayed) {
+  const Keystroke forte = test::keystroke("forte");
+  const std::vector<Part> together(12, {&forte, 0, 0.7});  // all in phase: all would split the same steps
+  Keyboard unbounded(test::grand_action().model, 12, settings_of(0));
+  EXPECT_GT(most_steps(unbounded, together, 0.7), 60);
+  for (const int budget : {60, 24, 12}) {
+    Keyboard keyboard(test::grand_action().model, 12, settings_of(0), {}, budget);
+    EXPECT_LE(most_steps(keyboard, together, 0.7), budget);
+  }
+}
+
+TEST(Keyboard, WithinItsBudgetGivesTheSameBits) {
+  const Keystroke forte = test::keystroke("forte");
+  const std::vector<Part> parts{{&forte, 0, 0.7}, {&forte, 0.01, 0.7}};
+  constexpr int kMost = 2 * 2 * (1 + 4);  // two keys, two steps each, every one of them tried and split in four
+  Keyboard whole(test::grand_action().model, 2, settings_of(0));
+  Keyboard bounded(test::grand_action().model, 2, settings_of(0), {}, kMost);
+  std::vector<DriveSample> inputs;
+  while (whole.time() < 0.7) {
+    test::sample(parts, whole, inputs);
+    whole.tick(inputs);
+    bounded.tick(inputs);
+    ASSERT_EQ(bounded.budget().level(), 0);
+    for (std::size_t k = 0; k < 2; ++k) ASSERT_EQ(whole.forces()[k], bounded.forces()[k]) << whole.time();
+  }
 }
 
 TEST(Keyboard, EventsOfEachKeyAreSeen) {

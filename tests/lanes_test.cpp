@@ -58,8 +58,9 @@ bool is_same(const StepReport& a, const StepReport& b) {
 
 Comparison compare(const std::vector<Model>& models, const std::vector<int>& model_of_key,
                    const std::vector<Part>& parts, double duration, const TickSettings& settings, InstructionSet set,
-                   const SleepSettings& sleep = no_sleep()) {
-  Keyboard scalar(models, model_of_key, settings, sleep), keyboard(models, model_of_key, settings, sleep);
+                   const SleepSettings& sleep = no_sleep(), int most_steps = StepBudget::kUnbounded) {
+  Keyboard scalar(models, model_of_key, settings, sleep, most_steps),
+      keyboard(models, model_of_key, settings, sleep, most_steps);
   KeyLanes lanes(keyboard, set);
   Comparison result;
   std::vector<DriveSample> inputs;
@@ -130,6 +131,14 @@ TEST_P(EverySet, LetsKeysSleepAndWakeAsTheScalarEngineDoes) {
     expect_same(result, "sleep");
     EXPECT_LT(result.count.in_lanes, 3 * 3000);  // of 4 x 3000: they did sleep
   }
+}
+
+TEST_P(EverySet, KeepsToTheStepBudgetAsTheScalarEngineDoes) {
+  const Keystroke forte = test::keystroke("forte");
+  // with 5 keys awake no step is split, with one all may be
+  expect_same(compare({test::grand_action().model}, std::vector<int>(5, 0), spread(forte, 0.7), 0.9, settings_of(0),
+                      GetParam(), SleepSettings::eager(), 10),
+              "budget");
 }
 
 TEST_P(EverySet, StepsGradedKeysTogether) {

@@ -305,6 +305,7 @@ TEST(HostStatus, NamesTheBitsOfFaultsAsTheRendererDoes) {
       host_status_t::kSlewLimited,      host_status_t::kCurrentLimited, host_status_t::kThermalLimited,
       host_status_t::kCannotPush,       host_status_t::kWrongType,      host_status_t::kOverflow,
       host_status_t::kPublishFailed,    host_status_t::kPeriodMissed,   host_status_t::kRecordingStopped,
+      host_status_t::kCoarserSteps,
   };
   for (int i = 0; i < kFaultCount; ++i) EXPECT_EQ(bits[static_cast<std::size_t>(i)], 1 << i) << fault_name(i);
 }

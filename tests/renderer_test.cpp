@@ -359,6 +359,20 @@ TEST(Renderer, SameInputsGiveTheSameBits) {
   }
 }
 
+TEST(Renderer, TellsWhenMoreKeysAreAwakeThanItsStepBudgetIsFor) {
+  RenderSettings settings = test::exact_rendering();
+  settings.keys = 3;
+  settings.sleep = SleepSettings::eager();
+  settings.max_steps_per_s = 10 / kT;  // one key with two steps, each tried and split in four
+  Device device(action(), settings);
+  EXPECT_TRUE(has(device.send({0, 0, 0}).faults, Fault::coarser_steps));  // nobody sleeps yet
+  while (device.renderer.keyboard().asleep_count() < 3) device.send({0, 0, 0});
+  for (double y = 0; y < 0.01; y += 1e-4) ASSERT_FALSE(has(device.send({y, 0, 0}).faults, Fault::coarser_steps)) << y;
+  bool is_told = false;
+  for (double y = 0; y < 0.01; y += 1e-4) is_told |= has(device.send({0.01, y, 0}).faults, Fault::coarser_steps);
+  EXPECT_TRUE(is_told);
+}
+
 TEST(Renderer, MakesNoHeapCall) {
   RenderSettings settings;
   settings.keys = 2;

@@ -187,6 +187,7 @@ DeviceSettings load_device(const ConfigText& config) {
   RenderSettings& rendering = settings.rendering;
   rendering.keys = whole_number(device, "keys", from_to(1, Renderer::kMaxKeys));
   rendering.tick = read_tick(device);
+  rendering.max_steps_per_s = number(device, "max_steps_per_s", kPositive);
   const double period = rendering.tick.period;
   read_input(device.section("input"), period, rendering);
   read_velocity(device.section("velocity"), rendering.track.estimator);

@@ -79,6 +79,7 @@ KeyPool::~KeyPool() { stop(); }
 
 std::span<const double> KeyPool::tick(std::span<const DriveSample> inputs) noexcept {
   inputs_ = inputs;
+  keyboard_.begin_tick(inputs);
   busy_.store(share_count_ - 1, std::memory_order_relaxed);  // seen by the workers with period_
   period_.fetch_add(1, std::memory_order_release);
   period_.notify_all();

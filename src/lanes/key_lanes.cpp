@@ -51,19 +51,22 @@ int effort_of(const StepReport& stepped, unsigned tangents) noexcept {
 }  // namespace
 
 struct LanePlayer::Band {
-  Band(std::span<const Mechanism> all, int key_count, const TickSettings& tick, const lanes::Kernel& kernel)
+  Band(std::span<const Mechanism> all, int key_count, const lanes::Kernel& kernel)
       : mechanisms(all),
-        settings(tick),
         lane_count(kernel.lanes),
         packing(all, kernel),
-        whole(tick.scheme, tick.drive),
-        split(busy_scheme(tick), tick.drive),
         players(static_cast<std::size_t>(key_count)),
         going(players.size()),
         sorted(players.size()),
         effort(players.size(), 0),
         begin(static_cast<std::size_t>(kEfforts * packing.plan_count()) + 2) {}
 
+  /// What the steps of a period are to be.
+  void set(const TickSettings& tick) noexcept {
+    settings = tick;
+    whole = LaneScheme(tick.scheme, tick.drive);
+    split = LaneScheme(busy_scheme(tick), tick.drive);
+  }
   int class_of(const Player& player) const noexcept;
   void sort(std::size_t number) noexcept;
   void step_all(std::size_t number, const LaneScheme& scheme, double after) noexcept;
@@ -75,7 +78,8 @@ struct LanePlayer::Band {
   TickSettings settings;
   int lane_count;
   lanes::Packing packing;
-  LaneScheme whole, split;  // steps of the scheme, and the shorter ones of those that it refuses
+  LaneScheme whole{settings.scheme, settings.drive},
+      split = whole;  // steps of the scheme, and the shorter ones of those that it refuses
   std::vector<Player> players;
   std::vector<Player*> going, sorted;
   std::vector<int> effort;  // of each key's last step
@@ -168,16 +172,16 @@ void LanePlayer::Band::enter(Player& player, const Drive& next, const StepReport
     player.is_over = !player.is_refused;
 }
 
-LanePlayer::LanePlayer(std::span<const Mechanism> mechanisms, int key_count, const TickSettings& settings,
-                       InstructionSet set)
-    : band_(std::make_unique<Band>(mechanisms, key_count, settings, lanes::kernel_for(set))) {}
+LanePlayer::LanePlayer(std::span<const Mechanism> mechanisms, int key_count, InstructionSet set)
+    : band_(std::make_unique<Band>(mechanisms, key_count, lanes::kernel_for(set))) {}
 LanePlayer::~LanePlayer() = default;
 LanePlayer::LanePlayer(LanePlayer&&) noexcept = default;
 
 const LanePlayer::Count& LanePlayer::count() const noexcept { return band_->count; }
 
-void LanePlayer::play(std::span<Turn> turns, Observer observer, void* context) noexcept {
+void LanePlayer::play(const TickSettings& settings, std::span<Turn> turns, Observer observer, void* context) noexcept {
   Band& band = *band_;
+  band.set(settings);
   band.observer = observer;
   band.context = context;
   for (std::size_t i = 0; i < turns.size(); ++i) {

@@ -38,8 +38,9 @@ enum class Fault : std::uint32_t {
   publish_failed = 1u << 21,     // a force could not be sent
   period_missed = 1u << 22,      // the work of a period ended after the next one was due
   recording_stopped = 1u << 23,  // the disk refused
+  coarser_steps = 1u << 24,      // more keys are awake than the step budget is for: a statistic, not an error
 };
-inline constexpr int kFaultCount = 24;
+inline constexpr int kFaultCount = 25;
 
 constexpr Fault operator|(Fault a, Fault b) noexcept {
   return static_cast<Fault>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
@@ -62,7 +63,8 @@ inline constexpr const char* fault_name(int i) noexcept {
                                                        "step_not_converged", "passivity_acted", "force_limited",
                                                        "slew_limited",       "current_limited", "thermal_limited",
                                                        "cannot_push",        "wrong_type",      "overflow",
-                                                       "publish_failed",     "period_missed",   "recording_stopped"};
+                                                       "publish_failed",     "period_missed",   "recording_stopped",
+                                                       "coarser_steps"};
   return names[static_cast<std::size_t>(i)];
 }
 

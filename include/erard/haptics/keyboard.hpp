@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "erard/haptics/sleep.hpp"
+#include "erard/haptics/step_budget.hpp"
 #include "erard/haptics/tick.hpp"
 #include "erard/mechanics/rest.hpp"
 
@@ -45,15 +46,19 @@ struct Turn {
 /// Once built: no heap, no exceptions, no locks. Same inputs, same bits, however the keys are shared out to threads.
 class Keyboard {
  public:
-  /// @param count  of equal keys
-  Keyboard(const Model& model, int count, const TickSettings& settings, const SleepSettings& sleep = {})
-      : Keyboard(std::span(&model, 1), std::vector<int>(static_cast<std::size_t>(count), 0), settings, sleep) {}
+  /// @param count       of equal keys
+  /// @param most_steps  of all keys together, in a period
+  Keyboard(const Model& model, int count, const TickSettings& settings, const SleepSettings& sleep = {},
+           int most_steps = StepBudget::kUnbounded)
+      : Keyboard(std::span(&model, 1), std::vector<int>(static_cast<std::size_t>(count), 0), settings, sleep,
+                 most_steps) {}
 
   /// @param models        the different ones, all valid
   /// @param model_of_key  for each key the number of its model
   Keyboard(std::span<const Model> models, std::span<const int> model_of_key, const TickSettings& settings,
-           const SleepSettings& sleep = {})
+           const SleepSettings& sleep = {}, int most_steps = StepBudget::kUnbounded)
       : settings_(settings),
+        budget_(settings, most_steps),
         sleep_(sleep),
         watch_(model_of_key.size()),
         force_(model_of_key.size(), 0.0),
@@ -70,6 +75,7 @@ class Keyboard {
 
   int size() const noexcept { return static_cast<int>(key_.size()); }
   const TickSettings& settings() const noexcept { return settings_; }
+  const StepBudget& budget() const noexcept { return budget_; }
 
   /// Advances all keys by one period.
   /// @param inputs    for each key value and rate at the end of the period; what was given last is where it starts,
@@ -81,6 +87,7 @@ class Keyboard {
   /// when no step was taken, and the next good input goes on from the last good one.
   template <typename Observer>
   std::span<const double> tick(std::span<const DriveSample> inputs, Observer&& observer) noexcept {
+    begin_tick(inputs);
     tick_share(0, 1, inputs, *work_, observer);
     end_tick();
     return force_;
@@ -89,17 +96,28 @@ class Keyboard {
     return tick(inputs, [](int, const State&, const StepReport&, double) noexcept {});
   }
 
+  /// Wakes the keys that the inputs concern.
+  void begin_tick(std::span<const DriveSample> inputs) noexcept {
+    assert(inputs.size() == key_.size());
+    Watch* const watch = watch_.data();
+    int awake = 0;
+    for (int k = 0; k < size(); ++k) {
+      if (watch[k].is_asleep && sleeps_on(k, inputs[k])) continue;
+      watch[k].is_asleep = false;
+      ++awake;
+    }
+    budget_.choose(awake);
+  }
+
   /// The same for the keys share, share + shares, share + 2 shares .. only: different shares may be advanced at the same
-  /// time by different threads, each with a Workspace of its own. After the last of them end_tick() moves the clock.
+  /// time by different threads, each with a Workspace of its own. Before the first of them begin_tick(), after the last
+  /// end_tick(), which moves the clock.
   template <typename Observer>
   void tick_share(int share, int shares, std::span<const DriveSample> inputs, Workspace& work,
                   Observer&& observer) noexcept {
-    assert(inputs.size() == key_.size());
     const Watch* const watch = watch_.data();
-    for (int k = share; k < size(); k += shares) {
-      if (watch[k].is_asleep && sleeps_on(k, inputs[k])) continue;
-      play(k, inputs[k], work, observer);
-    }
+    for (int k = share; k < size(); k += shares)
+      if (!watch[k].is_asleep) play(k, inputs[k], work, observer);
   }
   void end_tick() noexcept { ++ticks_; }
 
@@ -109,10 +127,9 @@ class Keyboard {
   template <typename Play>
   void tick_share_by(Play&& play, int share, int shares, std::span<const DriveSample> inputs,
                      std::span<Turn> turns) noexcept {
-    assert(inputs.size() == key_.size());
     std::size_t count = 0;
     for (int k = share; k < size(); k += shares)
-      if (!watch_[k].is_asleep || !sleeps_on(k, inputs[k])) turns[count++] = begin_turn(k, inputs[k]);
+      if (!watch_[k].is_asleep) turns[count++] = begin_turn(k, inputs[k]);
     play(turns.first(count));
     for (const Turn& turn : turns.first(count)) end_turn(turn.key, inputs[turn.key], turn.report);
   }
@@ -168,7 +185,6 @@ class Keyboard {
 
   Turn begin_turn(int k, const DriveSample& input) noexcept {
     Key& key = key_[k];
-    watch_[k].is_asleep = false;
     key.state.time = time();
     return {k, key.mechanism, {watch_[k].last, input, time(), settings_.period}, &key.state, {}};
   }
@@ -185,7 +201,7 @@ class Keyboard {
     const Turn turn = begin_turn(k, input);
     end_turn(
         k, input,
-        erard::tick(mechanism_[turn.model], settings_, turn.input, *turn.state, work,
+        erard::tick(mechanism_[turn.model], budget_.settings(), turn.input, *turn.state, work,
                     [&](const State& s, const StepReport& r, double force) noexcept { observer(k, s, r, force); }));
   }
 
@@ -218,6 +234,7 @@ class Keyboard {
   }
 
   TickSettings settings_;
+  StepBudget budget_;
   SleepSettings sleep_;
   long ticks_ = 0;
   std::vector<Mechanism> mechanism_;  // one for each model

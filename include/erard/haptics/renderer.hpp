@@ -22,8 +22,9 @@ namespace erard {
 
 /// How a device is rendered; config/device.yaml.
 struct RenderSettings {
-  int keys = 1;       // 1 .. 88
-  TickSettings tick;  // drive piston or key, rate
+  int keys = 1;                  // 1 .. 88
+  TickSettings tick;             // drive piston or key, rate
+  double max_steps_per_s = 4e5;  // internal, of all keys together; where they need more each is computed less finely
   SleepSettings sleep = SleepSettings::eager();
   Coupling coupling;  // between the device and the simulated key, of the drive `piston`
   PositionWatchSettings watch;
@@ -78,7 +79,7 @@ class Renderer {
         noise_energy_(noise_energy(settings)),
         message_watch_(settings.watch, settings.keys),
         keyboard_(coupled(model, settings), std::vector<int>(static_cast<std::size_t>(settings.keys), kNormal),
-                  settings.tick, settings.sleep),
+                  settings.tick, settings.sleep, most_steps(settings)),
         key_(static_cast<std::size_t>(settings.keys), Key(settings)),
         input_(key_.size()),
         output_(key_.size()),
@@ -104,6 +105,10 @@ class Renderer {
         input_, [this](int k, const State& state, const StepReport&, double force) noexcept { see(k, state, force); });
     for (int k = 0; k < size(); ++k) render(k, forces[k]);
     result_.faults |= result_.message;
+    if (keyboard_.budget().level() > 0) {
+      result_.faults |= Fault::coarser_steps;
+      counters_.add(Fault::coarser_steps);
+    }
     counters_.end_period(result_.faults);
     result_.asleep = keyboard_.asleep_count();
     result_.key = output_;
@@ -113,6 +118,11 @@ class Renderer {
 
  private:
   static constexpr int kNormal = 0, kSafe = 1;  // models of the keyboard
+
+  static int most_steps(const RenderSettings& settings) noexcept {
+    constexpr double kMost = StepBudget::kUnbounded;
+    return static_cast<int>(std::clamp(settings.max_steps_per_s * settings.tick.period + 1e-9, 1.0, kMost));
+  }
 
   struct Key {
     explicit Key(const RenderSettings& settings) noexcept : track(settings.track, settings.tick.period) {}

@@ -25,11 +25,11 @@ class LanePlayer {
 
   /// @param mechanisms  by Turn::model; they must outlive the player
   /// @param set         must be available
-  LanePlayer(std::span<const Mechanism> mechanisms, int key_count, const TickSettings& settings, InstructionSet set);
+  LanePlayer(std::span<const Mechanism> mechanisms, int key_count, InstructionSet set);
   ~LanePlayer();
   LanePlayer(LanePlayer&&) noexcept;
 
-  void play(std::span<Turn> turns, Observer observer, void* context) noexcept;
+  void play(const TickSettings& settings, std::span<Turn> turns, Observer observer, void* context) noexcept;
 
   /// Steps so far.
   struct Count {
@@ -48,7 +48,7 @@ class KeyLanes {
  public:
   explicit KeyLanes(Keyboard& keyboard, InstructionSet set = best_instruction_set())
       : keyboard_(keyboard),
-        player_(keyboard.mechanisms(), keyboard.size(), keyboard.settings(), set),
+        player_(keyboard.mechanisms(), keyboard.size(), set),
         turns_(static_cast<std::size_t>(keyboard.size())) {}
 
   /// As Keyboard::tick(), which see. The observer sees the steps of each key in their order, keys mixed.
@@ -57,9 +57,11 @@ class KeyLanes {
     using Callee = std::remove_reference_t<Observer>;
     const auto pass_on = [](void* context, int key, const State& state, const StepReport& report,
                             double force) noexcept { (*static_cast<Callee*>(context))(key, state, report, force); };
+    keyboard_.begin_tick(inputs);
     keyboard_.tick_share_by(
         [&](std::span<Turn> turns) noexcept {
-          player_.play(turns, pass_on, const_cast<void*>(static_cast<const void*>(&observer)));
+          player_.play(keyboard_.budget().settings(), turns, pass_on,
+                       const_cast<void*>(static_cast<const void*>(&observer)));
         },
         0, 1, inputs, turns_);
     keyboard_.end_tick();
