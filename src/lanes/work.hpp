@@ -51,6 +51,21 @@ struct PlacedContact {
   T normal_lever[kMaxBodies], tangent_lever[kMaxBodies];  // along its path
 };
 
+/// What the sweeps of a step have been so far.
+template <typename T>
+struct Sweeps {
+  T count = T(0.0), error = T(0.0);  // error: of the last ones
+  Mask<T> is_converged = Mask<T>(false);
+  unsigned tangents[kMaxLanes] = {};  // in play in the last ones
+};
+
+/// One-step problem of the rows in play alone.
+template <typename T>
+struct AlikeProblem {
+  T W[kMaxFrictionRows * kMaxFrictionRows];  // row by row, without gaps
+  T q[kMaxFrictionRows], bound[kMaxFrictionRows];
+};
+
 /// As erard::Workspace, which see, for several keys at once.
 template <typename T>
 struct Work {
@@ -88,6 +103,7 @@ struct Work {
   T W[kMaxFrictionRows][kMaxFrictionRows];
   T q[kMaxFrictionRows], bound[kMaxFrictionRows];
   Mask<T> is_in_play[kMaxFrictionRows];
+  AlikeProblem<T> alike;
 
   // of the lanes that are done
   T done_velocity[kMaxBodies], done_shift[kMaxBodies], done_guess[2 * kMaxContacts + kMaxBodies], done_finger;
