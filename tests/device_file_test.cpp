@@ -77,7 +77,7 @@ TEST(DeviceFile, GivesTheDefaultsOfTheStructs) {
   EXPECT_EQ(a.track.still_time, b.track.still_time);
   EXPECT_EQ(a.track.estimator.kind, b.track.estimator.kind);
   EXPECT_EQ(a.track.estimator.length, b.track.estimator.length);
-  EXPECT_EQ(a.track.estimator.band, b.track.estimator.band);
+  EXPECT_EQ(a.track.estimator.degree, b.track.estimator.degree);
   EXPECT_EQ(a.coupling.stiffness, b.coupling.stiffness);
   EXPECT_EQ(a.coupling.damping, b.coupling.damping);
   EXPECT_EQ(a.passivity.is_on, b.passivity.is_on);
@@ -137,17 +137,20 @@ TEST(DeviceFile, EveryNumberArrives) {
 }
 
 TEST(DeviceFile, OtherKindsBringTheirOwnKeys) {
-  const RateEstimatorSettings sliding =
-      Changed(
-          "kind: adaptive_line          # measured, docs/validation.md: least force error with noise of all that were "
-          "tried\n  longest_samples: 32          # choice: half the longest there is, 16 ms; a moving key's window is "
-          "shorter\n  band_m: 2.0e-5 ",
-          "kind: sliding_polynomial\n  length_samples: 12\n  degree: 2 ")
-          .load()
-          .rendering.track.estimator;
-  EXPECT_EQ(sliding.kind, RateEstimatorKind::sliding_polynomial);
-  EXPECT_EQ(sliding.length, 12);
-  EXPECT_EQ(sliding.degree, 2);
+  const std::string text = text_of(kFile);
+  const std::size_t rate_from = text.find("  kind: sliding_polynomial"), rate_to = text.find("\n# of the drive");
+  const std::string rate = text.substr(rate_from, rate_to - rate_from);
+  const RateEstimatorSettings line = Changed(rate, "  kind: adaptive_line\n  longest_samples: 32\n  band_m: 2.0e-5\n")
+                                         .load()
+                                         .rendering.track.estimator;
+  EXPECT_EQ(line.kind, RateEstimatorKind::adaptive_line);
+  EXPECT_EQ(line.length, 32);
+  EXPECT_EQ(line.band, 2e-5);
+  const RateEstimatorSettings fading =
+      Changed(rate, "  kind: fading_polynomial\n  degree: 1\n  memory: 0.5\n").load().rendering.track.estimator;
+  EXPECT_EQ(fading.kind, RateEstimatorKind::fading_polynomial);
+  EXPECT_EQ(fading.degree, 1);
+  EXPECT_EQ(fading.memory, 0.5);
 }
 
 TEST(DeviceFile, ReadsEveryActuatorWhicheverIsInUse) {
@@ -177,7 +180,7 @@ TEST(DeviceFile, BadValuesAreRefusedInOneSentenceWithTheirPlace) {
            Case{"max_force_N: 20", "max_force_n: 20",
                 "key max_force_n is not known in limits, did you mean max_force_N?"},
            Case{"fade_s: 0.020", "fade_s: 1e999", "fade_s = 1e999 in limits, must be a finite number"},
-           Case{"band_m: 2.0e-5", "memory: 0.5", "key band_m is missing in velocity"},
+           Case{"degree: 2 ", "memory: 0.5 ", "key degree is missing in velocity"},
            Case{"continuous_current_A: 1 ", "continuous_current_A: 4 ",
                 "continuous_current_A = 4 in actuator voice_coil, must be > 0 and at most 3"},
            Case{"loop_delay_s: 8.0e-4", "loop_delay_s: 0.02", "loop_delay_s = 0.02 in passivity, must be 0 to 0.003"},
@@ -186,7 +189,7 @@ TEST(DeviceFile, BadValuesAreRefusedInOneSentenceWithTheirPlace) {
            Case{"phase_us: 150", "phase_us: 600", "phase_us = 600 in real_time, must be 0 to 500"},
            Case{"forces_channel: ERARD_FORCES", "forces_channel: ERARD_POSITIONS",
                 "forces_channel = ERARD_POSITIONS in link, must differ from positions_channel"},
-           Case{"stiffness_N_per_m: 2000", "stiffness_N_per_m: 0",
+           Case{"stiffness_N_per_m: 500 ", "stiffness_N_per_m: 0 ",
                 "stiffness_N_per_m = 0 in passivity safe_coupling, must be > 0"},
        }) {
     const Changed file(c.from, c.to);

@@ -8,11 +8,14 @@
 
 namespace erard::test {
 
-/// Settings under which nothing but the simulation shapes the force: exact rate, no actuator.
+/// Settings under which nothing but the simulation shapes the force: exact rate, no noise, no actuator; and the
+/// thesis's coupling, with which strokes are simulated.
 inline RenderSettings exact_rendering(int keys = 1) {
   RenderSettings settings;
   settings.keys = keys;
   settings.track.estimator = {RateEstimatorKind::sliding_polynomial, 3, 2, 0, 0};
+  settings.coupling = {6500, 134};
+  settings.passivity.sensor_noise = 0;
   settings.actuator.kind = ActuatorKind::none;
   return settings;
 }

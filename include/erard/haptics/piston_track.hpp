@@ -15,7 +15,7 @@ struct PistonTrackSettings {
   double extrapolation = 0.001;  // a missing sample is guessed for so long, then the piston stands [s]
   double realign_speed = 0.02;   // of the piston, to where the key is after a silence or a jump, at most [m/s]
   double realign_time = 0.02;    // and in which the rest of the way falls to 1/e [s]
-  double still_zone = 3e-5;      // a key that stays within it stands still: six times the rms noise of the sensor [m]
+  double still_zone = 3e-4;      // a key whose samples stay within it may stand: six times the rms noise [m]
   double still_time = 0.05;      // when it has done so for so long [s]
 };
 
@@ -29,19 +29,25 @@ struct PistonTrackSettings {
 /// - Samples that were lost on the way but counted (`lost`) are put between, so that the estimator, which knows
 ///   samples, not times, sees the true rate.
 /// - A key that stands still but for its sensor's noise has a piston that stands still to the bit. Then its action
-///   comes to rest and sleeps, Keyboard. When it moves again the offset takes the difference.
+///   comes to rest and sleeps, Keyboard. Its samples stay within still_zone z of their mean, and so that a slow key does
+///   not count as one that stands, their fading mean s = (31 s + x) / 32, whose noise is an eighth, within z / 8. When
+///   it moves again the offset takes the difference, but for what would count as not aligned: that is a step of less
+///   than z and a sample.
 class PistonTrack {
  public:
   PistonTrack(const PistonTrackSettings& settings, double period) noexcept : estimator_(settings.estimator, period) {}
 
   /// A sample that counts. @param position [m], @param lost samples before it, @param resumed it may lie anywhere
   void take(const PistonTrackSettings& settings, double period, double position, int lost, bool resumed) noexcept {
-    if (is_still_ && std::abs(position - middle_) <= settings.still_zone) {
+    smooth_ += resumed ? position - smooth_ : kFresh * (position - smooth_);
+    if (is_still_ && is_near(settings, position, middle_)) {
       missed_ = 0;
       return;
     }
+    const bool has_stood = is_still_ && !resumed;
     if (resumed || is_still_ || is_guessed_out(settings, period)) {
       begin(position);
+      if (has_stood) offset_ = std::clamp(offset_, -kAligned / 2, kAligned / 2);
     } else {
       const int between = std::clamp(lost - missed_, 0, kMostBetween);
       for (int i = 1; i <= between; ++i) estimator_.update(x_ + (position - x_) * i / (between + 1));
@@ -81,13 +87,19 @@ class PistonTrack {
   bool is_aligned() const noexcept { return std::abs(offset_) <= kAligned; }
 
  private:
-  static constexpr int kMostBetween = 8;    // more and the estimator has forgotten anyway
-  static constexpr int kLong = 1 << 20;     // periods
-  static constexpr double kAligned = 1e-4;  // [m] 0.65 N of the thesis's finger
-  static constexpr double kNothing = 1e-9;  // [m] a thousandth of what sensors resolve
+  static constexpr int kMostBetween = 8;                    // more and the estimator has forgotten anyway
+  static constexpr int kLong = 1 << 20;                     // periods
+  static constexpr double kAligned = 1e-4;                  // [m] 0.65 N of the thesis's finger
+  static constexpr double kNothing = 1e-9;                  // [m] a thousandth of what sensors resolve
+  static constexpr double kFresh = 1.0 / 32, kQuieter = 8;  // of s; its noise: sqrt(kFresh / (2 - kFresh)) = 1 / 7.9
 
   bool is_guessed_out(const PistonTrackSettings& settings, double period) const noexcept {
     return missed_ * period > settings.extrapolation * (1 + 1e-9);  // whole periods, whatever the rounding
+  }
+
+  bool is_near(const PistonTrackSettings& settings, double position, double middle) const noexcept {
+    return std::abs(position - middle) <= settings.still_zone &&
+           std::abs(smooth_ - middle) <= settings.still_zone / kQuieter;
   }
 
   void begin(double position) noexcept {
@@ -102,10 +114,10 @@ class PistonTrack {
 
   /// Whether all samples for still_time lay around their running mean.
   void look_for_stillness(const PistonTrackSettings& settings, double period) noexcept {
-    if (count_ > 0 && std::abs(x_ - sum_ / count_) > settings.still_zone) sum_ = 0, count_ = 0;
+    if (count_ > 0 && !is_near(settings, x_, sum_ / count_)) sum_ = 0, count_ = 0;
     sum_ += x_;
     ++count_;
-    if (count_ * period < settings.still_time || std::abs(offset_) > settings.still_zone) return;
+    if (count_ * period < settings.still_time || std::abs(offset_) > settings.still_zone / kQuieter) return;
     is_still_ = true;
     middle_ = sum_ / count_;
   }
@@ -115,6 +127,7 @@ class PistonTrack {
   int missed_ = 0;                        // periods since the last sample that counted
   DriveSample piston_;                    // now
   double x_ = 0, rate_ = 0, offset_ = 0;  // [m], [m/s], [m]
+  double smooth_ = 0;                     // s [m]
   double sum_ = 0;                        // of samples [m]
   int count_ = 0;
   RateEstimator estimator_;

@@ -12,11 +12,11 @@ enum class RateEstimatorKind { sliding_polynomial, fading_polynomial, adaptive_l
 
 /// Which of them, and how; what a kind does not name it does not look at.
 struct RateEstimatorSettings {
-  RateEstimatorKind kind = RateEstimatorKind::adaptive_line;
-  int length = 32;      // window of sliding_polynomial, longest window of adaptive_line [samples]
-  int degree = 1;       // of the polynomials
+  RateEstimatorKind kind = RateEstimatorKind::sliding_polynomial;
+  int length = 6;       // window of sliding_polynomial, longest window of adaptive_line [samples]
+  int degree = 2;       // of the polynomials
   double memory = 0.4;  // of fading_polynomial, 0 <= memory < 1
-  double band = 2e-5;   // of adaptive_line: four times the rms noise of the sensor [m]
+  double band = 2e-4;   // of adaptive_line: four times the rms noise of the sensor [m]
 };
 
 /// One of the three, in place: 1.1 kB.

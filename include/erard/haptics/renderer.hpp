@@ -26,7 +26,7 @@ struct RenderSettings {
   TickSettings tick;             // drive piston or key, rate
   double max_steps_per_s = 4e5;  // internal, of all keys together; where they need more each is computed less finely
   SleepSettings sleep = SleepSettings::eager();
-  Coupling coupling;  // between the device and the simulated key, of the drive `piston`
+  Coupling coupling{4000, 9};  // between device and simulated key, of the drive `piston`; docs/stability.md
   PositionWatchSettings watch;
   PistonTrackSettings track;
   PassivitySettings passivity;
@@ -134,11 +134,12 @@ class Renderer {
     Actuator actuator;
     Passivity passivity;
     HammerWatch hammer;
-    double y = 0;         // of the simulated key, now [m]
-    double force = 0;     // on it, at the last internal step [N]
-    double given = 0;     // to it this period [J]
-    double way_from = 0;  // piston of the period before [m]
-    PistonTrack track;    // large, and its first lines are what a resting key looks at
+    double y = 0;               // of the simulated key, now [m]
+    double force = 0;           // on it, at the last internal step [N]
+    double given = 0;           // to it this period [J]
+    bool is_held_back = false;  // the actuator is asked for less than the simulated force
+    double way_from = 0;        // piston of the period before [m]
+    PistonTrack track;          // large, and its first lines are what a resting key looks at
   };
 
   /// The model with either coupling, by kNormal and kSafe.
@@ -233,6 +234,7 @@ class Renderer {
         key.actuator.command(settings_.actuator, period_, out.force, out.piston.rate, out.faults);
     out.current = command.current;
     out.expected_force = command.force;
+    key.is_held_back = has(out.faults, Fault::force_limited | Fault::current_limited | Fault::thermal_limited);
     key.passivity.remember(command.force);
     out.surplus = key.passivity.surplus();
     key.given = 0;
@@ -254,7 +256,8 @@ class Renderer {
     };
     // a force that is fading has little to do with the simulated one
     if (is_well && key.guard.fade() == 1) {
-      key.passivity.observe(passivity, period_, noise_energy_, {out.piston.value - key.way_from, key.given, stored()});
+      key.passivity.observe(passivity, period_, noise_energy_,
+                            {out.piston.value - key.way_from, key.given, stored(), key.is_held_back});
     } else {
       key.passivity.restart(passivity, stored());
     }
