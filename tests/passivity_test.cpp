@@ -167,6 +167,7 @@ Lever press_onto_the_bottom(bool is_on) {
   settings.passivity.is_on = is_on;
   settings.passivity.device_damping = 0;
   settings.passivity.loop_delay = kT;
+  settings.passivity.safe_coupling = {2000, 25};  // 10 N through it press the lever 5 mm deeper, not 20
   settings.track.still_zone = 0;
   settings.guard.max_force = 1e3;  // no limit may help
   settings.guard.max_slew = 1e9;

@@ -16,6 +16,7 @@ inline RenderSettings exact_rendering(int keys = 1) {
   settings.track.estimator = {RateEstimatorKind::sliding_polynomial, 3, 2, 0, 0};
   settings.coupling = {6500, 134};
   settings.passivity.sensor_noise = 0;
+  settings.track.still_zone = 3e-5;
   settings.actuator.kind = ActuatorKind::none;
   return settings;
 }
