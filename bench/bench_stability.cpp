@@ -87,6 +87,25 @@ Panel map_panel(const ActionFile& rigid, double mass, int delay, const std::vect
 }
 
 // ---- tables
+/// Margins of couplings that might be the safe one, over all fingers and rigid stops, levers and delays.
+std::string safe_table(double damping) {
+  std::vector<FingerSettings> holders(std::begin(kFingers), std::end(kFingers));
+  holders.insert(holders.end(), std::begin(kStops), std::end(kStops));
+  Rows rows;
+  for (const double stiffness : {2000., 1400., 1000., 700., 500., 300.}) {
+    std::vector<std::string> row{fmt::format("{:g}", stiffness)};
+    for (const double b : {0.5, damping, 2., 4., 9.}) {
+      const LoopSetting setting = with_coupling(cautious_setting(), {stiffness, b});
+      double least = HUGE_VAL;
+      for (const double mass : kLevers)
+        for (const int delay : {1, 2}) least = std::min(least, least_margin(setting, mass, delay, holders));
+      row.push_back(margin(least));
+    }
+    rows.push_back(row);
+  }
+  return table({"a [N/m]", "b = 0.5 N s/m", fmt::format("{:g}", damping), "2", "4", "9"}, rows);
+}
+
 std::string known_pair_table(const ActionFile& action, const ActionFile& rigid) {
   Rows rows;
   for (const double mass : kLevers)
@@ -177,38 +196,66 @@ Summary summarise(const ActionFile& action, const LoopSetting& s) {
   return summary;
 }
 
-/// The host's pipeline as config/device.yaml sets it, with its passivity controller on and off.
-std::string passivity_table(const ActionFile& action, const LoopSetting& cautious) {
+RenderSettings device_file() { return load_device(config_dir() / "device.yaml").rendering; }
+
+const char* name_of(ActuatorKind kind) { return kind == ActuatorKind::mr_brake ? "MR brake" : "voice coil"; }
+
+/// Whoever holds a lever, in the rows of the pipeline's tables.
+struct Holder {
+  const char* name;
+  std::span<const FingerSettings> fingers;
+};
+
+/// Holds through the whole pipeline; cells are the worst of a holder's fingers.
+std::string pipeline_table(const ActionFile& action, const RenderSettings& device,
+                           const std::vector<ActuatorKind>& actuators, const std::vector<Holder>& holders,
+                           double& largest_ratio) {
   Rows rows;
-  for (const bool is_cautious : {false, true})
-    for (const double mass : kLevers)
-      for (const int delay : {1, 2})
-        for (const bool is_on : {false, true}) {
-          RenderSettings rendering = load_device(config_dir() / "device.yaml").rendering;
-          rendering.watch.highest = 0.026;  // past the rig's stop
-          rendering.passivity.is_on = is_on;
-          rendering.passivity.loop_delay = delay * kPeriod + kCoilLag;
-          rendering.coupling = is_cautious ? cautious.coupling : plain_setting().coupling;
-          rendering.track.estimator.kind = RateEstimatorKind::adaptive_line;
-          if (is_cautious) {
-            rendering.track.estimator.kind = RateEstimatorKind::sliding_polynomial;
-            rendering.track.estimator.length = 6;
-            rendering.track.estimator.degree = 2;
-          }
-          std::vector<std::string> row{is_cautious ? cautious.name : "adaptive line", name_of(rendering.coupling),
-                                       grams(mass), fmt::format("{}", delay), is_on ? "on" : "off"};
+  for (const ActuatorKind actuator : actuators)
+    for (const Holder& holder : holders)
+      for (const double mass : kLevers)
+        for (const int delay : {1, 2}) {
+          std::vector<std::string> row{name_of(actuator), holder.name, grams(mass), fmt::format("{}", delay)};
           for (const Hold place : kHolds) {
-            ClosedLoopSettings loop = loop_of(cautious, mass, delay, kHand);
-            loop.rig.sensor.noise = kFineNoise;
-            loop.host = PipelineHost{rendering};
-            const HoldVerdict v = hold(action, loop, place, kHoldTime);
-            row.push_back(fmt::format("{:.2f} / {:.0f} %", v.last, 100 * v.guarded));
+            double ratio = 0, last = 0, finger_force = 0, guarded = 0;
+            for (const FingerSettings& finger : holder.fingers) {
+              const HoldVerdict v =
+                  hold(action, pipeline_loop(device, actuator, mass, delay, finger), place, kHoldTime);
+              ratio = std::max(ratio, v.last / std::max(v.before, HoldVerdict::kSilence));
+              last = std::max(last, v.last);
+              finger_force = std::max(finger_force, v.finger);
+              guarded = std::max(guarded, v.guarded);
+            }
+            largest_ratio = std::max(largest_ratio, ratio);
+            row.push_back(fmt::format("{:.2f} / {:.2f} / {:.2f} / {}", ratio, last, finger_force, percent(guarded)));
           }
           rows.push_back(row);
         }
-  return table({"estimator", "coupling", "lever", "delay", "passivity", "at rest", "at the let-off", "key bottom, 5 N",
-                "key bottom, 15 N"},
-               rows);
+  return table(
+      {"actuator", "held by", "lever", "delay", "at rest", "at the let-off", "key bottom, 5 N", "key bottom, 15 N"},
+      rows);
+}
+
+/// What a finger feels through the whole pipeline, as the file sets it.
+std::string pipeline_fidelity_table(const ActionFile& action, const RenderSettings& device) {
+  const ReferenceStroke strokes[] = {reference_stroke(action, "piano", 0.22), reference_stroke(action, "forte", 0.142)};
+  Rows rows;
+  for (const ActuatorKind actuator : {ActuatorKind::voice_coil, ActuatorKind::mr_brake})
+    for (const double mass : kLevers)
+      for (const int delay : {1, 2}) {
+        std::vector<std::string> row{name_of(actuator), grams(mass), fmt::format("{}", delay)};
+        for (const ReferenceStroke& stroke : strokes) {
+          ClosedLoopSettings loop = pipeline_loop(device, actuator, mass, delay, kHand);
+          auto& rendering = std::get<PipelineHost>(loop.host).rendering;
+          rendering.track.still_zone = device.track.still_zone;
+          rendering.actuator.voice_coil = device.actuator.voice_coil;
+          const Fidelity f = fidelity(action, loop, stroke);
+          row.push_back(fmt::format("{} / {:.2f} / {:+.0f} / {}", percent(f.eta), f.rms, 100 * f.hammer_speed,
+                                    percent(f.guarded)));
+        }
+        rows.push_back(row);
+      }
+  return table({"actuator", "lever", "delay", "piano", "forte"}, rows);
 }
 
 /// What else makes room: largest b for a = 6500 with the backward difference, lever of 60 g.
@@ -258,10 +305,21 @@ int main(int argc, char** argv) try {
 
   fmt::print(stderr, "tables ...\n");
   const Summary a = summarise(action, cautious), b = summarise(action, observed);
+  const RenderSettings device = device_file();
+  constexpr ActuatorKind kCoil = ActuatorKind::voice_coil, kBrake = ActuatorKind::mr_brake;
+  const std::span<const FingerSettings> stops(kStops);
+  double largest_ratio = 0, not_told = 0;
+  const std::string pipeline = pipeline_table(
+      action, device, {kCoil, kBrake},
+      {{"fingers", kFingers}, {"stop, 20 N s/m", stops.subspan(1)}, {"stop, 1 N s/m", stops.first(1)}}, largest_ratio);
+  RenderSettings unguarded = device;
+  unguarded.passivity.is_on = false;
+  const std::string without_passivity =
+      pipeline_table(action, unguarded, {kCoil}, {{"stop, 1 N s/m", stops.first(1)}}, not_told);
   std::string text =
       fmt::format(fmt::runtime(kHead), cautious.coupling.stiffness, cautious.coupling.damping, cautious.name, a.margin,
                   percent(a.piano), percent(a.forte), observed.coupling.stiffness, observed.coupling.damping, b.margin,
-                  percent(b.piano), percent(b.forte), count.agree, count.all, count.largest_margin);
+                  percent(b.piano), percent(b.forte), count.agree, count.all, count.largest_margin, largest_ratio);
   text += known_pair_table(action, rigid) + kMargins + margin_table(chosen);
   fmt::print(stderr, "holds ...\n");
   text += kHolding + hold_table(action, chosen, VirtualActuatorSettings::voice_coil(), kNoise, kFingers);
@@ -270,8 +328,9 @@ int main(int argc, char** argv) try {
   fmt::print(stderr, "fidelity ...\n");
   text += kFidelity +
           fidelity_table(action, {{plain, 0.2}, {cautious, 0.06}, {observed, 0.06}, {cautious, 0.2}, {observed, 0.2}});
-  fmt::print(stderr, "passivity ...\n");
-  text += kPassivity + passivity_table(action, cautious) + kRemedies + remedy_table() + kLimits;
+  text += kPipeline + pipeline + kWithoutPassivity + without_passivity + kSafe +
+          safe_table(device.passivity.safe_coupling.damping) + kPipelineFidelity +
+          pipeline_fidelity_table(action, device) + kRemedies + remedy_table() + kLimits;
   OutputFile file(docs / "stability.md");
   file.write(text);
   file.commit();

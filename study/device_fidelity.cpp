@@ -51,6 +51,7 @@ Fidelity fidelity(const ActionFile& action, const ClosedLoopSettings& settings, 
   for (std::size_t i = 0; i < felt.time.size() && felt.time[i] <= stroke.end; ++i, ++count)
     result.rms += std::pow(felt.force[i] - stroke.force.force[i + 1], 2);
   result.rms = std::sqrt(result.rms / static_cast<double>(std::max(count, 1L)));
+  result.guarded = trace.guarded;
   result.hammer_speed = trace.hammer_speed / stroke.hammer_speed - 1;
   return result;
 }

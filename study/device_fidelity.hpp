@@ -26,6 +26,7 @@ struct Fidelity {
   double eta = 0;           // of the finger's force, thesis (6.3)
   double rms = 0;           // of its error [N]
   double hammer_speed = 0;  // relative difference
+  double guarded = 0;       // part of the periods in which the passivity controller acted
 };
 Fidelity fidelity(const ActionFile& action, const ClosedLoopSettings& settings, const ReferenceStroke& stroke);
 

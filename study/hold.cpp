@@ -93,7 +93,8 @@ HoldVerdict judge_hold(const LoopTrace& trace) {
   const double end = static_cast<double>(trace.command.size()) * trace.period;
   return {rms_above_50_Hz(trace.command, trace.period, end - 2, end - 1),
           rms_above_50_Hz(trace.command, trace.period, end - 1, end),
-          rms_above_50_Hz(trace.finger, trace.period, end - 1, end), trace.guarded};
+          rms_above_50_Hz(trace.finger, trace.period, end - 1, end),
+          rms_above_50_Hz(trace.finger, trace.period, end - 2, end - 1), trace.guarded};
 }
 
 HoldVerdict hold(const ActionFile& action, const ClosedLoopSettings& settings, Hold hold, double seconds) {

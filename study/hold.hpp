@@ -38,6 +38,7 @@ double rms_above_50_Hz(const std::vector<double>& signal, double period, double 
 struct HoldVerdict {
   double before = 0, last = 0;  // rms of the command above 50 Hz in the last but one and the last second [N]
   double finger = 0;            // the same of the finger's force in the last second [N]
+  double finger_before = 0;     // and in that before
   double guarded = 0;           // part of the time in which the passivity controller acted
   bool grows() const { return last > kNoGrowth * before + kSilence; }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include "erard/haptics/lever_observer.hpp"
 #include "study/causal_input.hpp"
+#include "study/lever_observer.hpp"
 
 namespace erard::study {
 

@@ -103,6 +103,22 @@ ClosedLoopSettings loop_of(const LoopSetting& setting, double lever_mass, int de
   return loop;
 }
 
+ClosedLoopSettings pipeline_loop(const RenderSettings& device, ActuatorKind actuator, double lever_mass, int delay,
+                                 const FingerSettings& finger) {
+  ClosedLoopSettings loop = loop_of(cautious_setting(), lever_mass, delay, finger);
+  RenderSettings rendering = device;
+  rendering.watch.highest = loop.rig.lever.depth + 1e-3;
+  rendering.track.still_zone = 0;
+  rendering.actuator.kind = actuator;
+  rendering.actuator.voice_coil.continuous_current = rendering.actuator.voice_coil.max_current;
+  if (actuator == ActuatorKind::mr_brake) {
+    loop.rig.actuator = VirtualActuatorSettings::mr_brake();
+    loop.rig.actuator.off_drag = rendering.actuator.mr_brake.drag;
+  }
+  loop.host = PipelineHost{rendering};
+  return loop;
+}
+
 ActionFile with_rigid_key(ActionFile action) {
   action.model.bodies[static_cast<std::size_t>(action.model.finger.body)].is_held = true;
   return action;

@@ -48,6 +48,13 @@ double noise_force(const LoopSetting& setting, double lever_mass, int delay, dou
 /// The simulated loop of a setting. Cheap sensor, voice coil, lever with dry friction unless they are changed.
 ClosedLoopSettings loop_of(const LoopSetting& setting, double lever_mass, int delay, const FingerSettings& finger);
 
+/// The same with the host's whole pipeline. Two things that would hide a loop that shakes are left out: keys that stand
+/// still have no feedback, so none may, and the winding stays cold, since a hot one holds a constant force. The host thinks of
+/// one period of delay, as its file says, whatever there is.
+/// @param device  of config/device.yaml
+ClosedLoopSettings pipeline_loop(const RenderSettings& device, ActuatorKind actuator, double lever_mass, int delay,
+                                 const FingerSettings& finger);
+
 /// The action with its key clamped: the linear model's virtual key.
 ActionFile with_rigid_key(ActionFile action);
 

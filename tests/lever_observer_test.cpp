@@ -1,5 +1,5 @@
 // The observer that knows the device's own force.
-#include "erard/haptics/lever_observer.hpp"
+#include "study/lever_observer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "erard/haptics/velocity.hpp"
 #include "support/heap_calls.hpp"
 
-namespace erard {
+namespace erard::study {
 namespace {
 
 constexpr double kPeriod = 5e-4;  // [s]
@@ -89,4 +89,4 @@ TEST(LeverObserver, TakesNoHeap) {
 }
 
 }  // namespace
-}  // namespace erard
+}  // namespace erard::study

@@ -44,7 +44,6 @@
 #include "erard/haptics/sleep.hpp"
 #include "erard/haptics/keyboard.hpp"
 #include "erard/haptics/velocity.hpp"
-#include "erard/haptics/lever_observer.hpp"
 #include "erard/haptics/events.hpp"
 #include "erard/haptics/fault.hpp"
 #include "erard/haptics/position_watch.hpp"

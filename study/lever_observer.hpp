@@ -12,7 +12,8 @@
 // The piston is then led ahead by what is on its way: the commands of the n periods in which a new one will not act yet,
 // and `lead`, half a period for one that will be held for a period.
 //
-// For a voice coil. A brake's force is not its command while the lever sticks, and needs no such help: it cannot push.
+// Compared in docs/stability.md and not part of the host's pipeline: it has to be told lever and delay, and a rigid stop is
+// no free lever. For a voice coil. A brake's force is not its command while the lever sticks, and needs no such help: it cannot push.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@
 
 #include "erard/solver/drive.hpp"
 
-namespace erard {
+namespace erard::study {
 
 struct LeverObserverSettings {
   // m, effective at the finger; told a quarter too heavy it costs a quarter of the margin [kg] > 0
@@ -105,4 +106,4 @@ class LeverObserver {
   bool is_empty_ = true;
 };
 
-}  // namespace erard
+}  // namespace erard::study
