@@ -117,12 +117,11 @@ by a quarter of a turn itself. No damping helps: softness does. Gain margins ove
 )";
 
 inline constexpr const char* kPipelineFidelity = R"(
-So the safe coupling is 500 N/m with 1 N s/m. It gives way: the lever goes down to its own stop under more than 3 N, until the
-key is let go. Before, it was 2000 and 25, which the stop shook with 9 N.
+So the safe coupling is 500 N/m with 1 N s/m. It gives way: pressed with 3 N the lever is 6 mm deeper than the key, on its own
+stop, until the key is let go.
 
 Noise does not set the controller off: it may look like sigma^2 (3 b / 2 T + a) / T = 0.16 W of energy from nothing, which is
-allowed for. With the thesis's 134 N s/m that was 2 W, and with the noise told as 5 um a hundredth of it: it acted in half of the
-periods. Nor does a limit set it off any more: while a limit or a hot winding holds the force back, the account stands. It used to act
+allowed for; with the thesis's 134 N s/m it would be 2 W. Nor does a limit set it off any more: while a limit or a hot winding holds the force back, the account stands. It used to act
 when a coil that had been held at 15 N for nine seconds folded back.
 
 What a finger feels through the pipeline, the file as it is; the stroke and the finger of the section before. Cells: eta [%] / RMS [N]

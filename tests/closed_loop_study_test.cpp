@@ -119,6 +119,77 @@ TEST(Stability, ChosenCouplingsKeepStillInTheWorstCorners) {
       }
 }
 
+// ---- the whole pipeline, config/device.yaml; the defaults in code are the same, DeviceFile.GivesTheDefaultsOfTheStructs
+
+constexpr double kShort = 4;  // [s] of a hold; an unstable loop is at its limits within one
+
+HoldVerdict pipeline_hold(const FingerSettings& finger, Hold place, bool is_guarded,
+                          ActuatorKind actuator = ActuatorKind::voice_coil) {
+  RenderSettings device;
+  device.passivity.is_on = is_guarded;
+  return hold(action(), pipeline_loop(device, actuator, 0.06, 2, finger), place, kShort);
+}
+
+TEST(Pipeline, KeepsStillAndItsControllerAsleepInTheWorstCornersOfTheFingers) {
+  for (const FingerSettings& finger : {FingerSettings{200, 1}, {5000, 1}})
+    for (const Hold place : {Hold::at_let_off, Hold::firm_bottom}) {
+      const HoldVerdict v = pipeline_hold(finger, place, true);
+      EXPECT_FALSE(v.grows()) << finger.stiffness << ' ' << name_of(place);
+      EXPECT_LT(v.last, 1.5 * noise_force(cautious_setting(), 0.06, 2, kNoise)) << name_of(place);
+      EXPECT_EQ(v.guarded, 0) << finger.stiffness << ' ' << name_of(place);
+    }
+}
+
+TEST(Pipeline, CalmsALeverOf60GramsAgainstARigidStop) {
+  const HoldVerdict shaken = pipeline_hold(kRigidStop, Hold::firm_bottom, false);
+  EXPECT_GT(shaken.finger, 10);  // [N] the case is one
+  const HoldVerdict calm = pipeline_hold(kRigidStop, Hold::firm_bottom, true);
+  EXPECT_GT(calm.guarded, 0.5);
+  EXPECT_FALSE(calm.grows());
+  EXPECT_LT(calm.last, 1);      // [N] as loud as noise alone makes the usual coupling
+  EXPECT_LT(calm.finger, 0.5);  // [N] a twentieth of the other
+}
+
+TEST(Pipeline, NeedsNoControllerAgainstARigidStopWithAFingersDamping) {
+  const HoldVerdict v = pipeline_hold({5e4, 20}, Hold::firm_bottom, true);
+  EXPECT_FALSE(v.grows());
+  EXPECT_EQ(v.guarded, 0);
+}
+
+TEST(Pipeline, SafeCouplingIsStableWhoeverHoldsTheLever) {
+  const LoopSetting safe = with_coupling(cautious_setting(), RenderSettings().passivity.safe_coupling);
+  for (const double mass : kLevers)
+    for (const int delay : {1, 2}) {
+      EXPECT_GT(least_margin(safe, mass, delay, kFingers), 1.5) << mass << ' ' << delay;
+      EXPECT_GT(least_margin(safe, mass, delay, kStops), 1.5) << mass << ' ' << delay;
+    }
+}
+
+TEST(Pipeline, AWindingThatFoldsBackDoesNotSetTheControllerOff) {
+  ClosedLoopSettings loop = pipeline_loop({}, ActuatorKind::voice_coil, 0.06, 1, kHand);
+  VoiceCoilSettings& coil = std::get<PipelineHost>(loop.host).rendering.actuator.voice_coil;
+  coil = VoiceCoilSettings{};
+  coil.thermal_time = 8;  // [s] that 15 N do it within three seconds
+  const HoldPoint point = hold_point(action(), loop.coupling(), Hold::firm_bottom);
+  const LoopTrace trace = play_loop(action(), loop, hold_with(kHand, point, kShort));
+  EXPECT_LT(trace.command.back(), 9);  // [N] it has folded back to nearly 8
+  EXPECT_EQ(trace.guarded, 0);
+}
+
+TEST(Pipeline, StrokesDoNotSetTheControllerOff) {
+  for (const auto& [name, end] : {std::pair{"piano", 0.22}, {"forte", 0.142}}) {
+    const ReferenceStroke stroke = reference_stroke(action(), name, end);
+    const Fidelity f = fidelity(action(), pipeline_loop({}, ActuatorKind::voice_coil, 0.06, 1, kHand), stroke);
+    EXPECT_EQ(f.guarded, 0) << name;
+    EXPECT_LT(f.eta, 0.25) << name;  // docs/stability.md: a fifth, with noise of another seed
+  }
+}
+
+TEST(Pipeline, BrakeShakesNoFinger) {
+  const HoldVerdict v = pipeline_hold({5000, 1}, Hold::firm_bottom, true, ActuatorKind::mr_brake);
+  EXPECT_LT(v.finger, 0.05);  // [N]
+}
+
 TEST(Stability, BrakeIsQuietWithTheThesisCouplingToo) {
   ClosedLoopSettings loop = loop_of(plain_setting(), 0.06, 2, kHand);
   loop.rig.actuator = VirtualActuatorSettings::mr_brake();
