@@ -94,18 +94,38 @@ TEST_P(HostInputAtEitherPace, ValuesThatAreNoNumbersAreNoPositions) {
   expect_faded();
 }
 
+/// Whether samples came so closely in the window that nobody could have gone so far between two of them.
+bool is_too_close_for(double way, const test::RecordedSession& session, const test::Window& window) {
+  std::int64_t last = 0;
+  for (const test::RecordedPeriod& period : session.periods) {
+    if (!window.holds(period.time()) || period.arrived.empty()) continue;
+    const std::int64_t time = period.arrived.back().device_time_ns;  // the newest is looked at
+    if (last > 0 && session.rendering().watch.max_speed * 1e-9 * static_cast<double>(time - last) >= way) return false;
+    last = time;
+  }
+  return true;
+}
+
 TEST_P(HostInputAtEitherPace, AMomentaryJumpIsNotBelieved) {
-  start_host();
-  const std::int64_t before = device_->status().dropped_implausible_speed;
-  disturb(
-      [&](positions_t p, Sender& sender) {  // 4 of 40 samples: 2 ms
-        if (p.sequence % 40 < 4) p.position_m[0] -= 5e-3;
-        sender.publish(kPositionsChannel, p);
-      },
-      [&] { return device_->status().dropped_implausible_speed > before + 40; });
-  trust_the_finger();
-  finish({Fault::implausible_speed});
-  expect_undisturbed();
+  constexpr double kWay = 5e-3;  // [m]
+  // Where the machine keeps device or host waiting for 1.7 ms, 5 mm are no jump but a quick motion: then once more.
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    device_.reset();
+    start_host();
+    const std::int64_t before = device_->status().dropped_implausible_speed;
+    disturb(
+        [&](positions_t p, Sender& sender) {  // 4 of 40 samples: 2 ms
+          if (p.sequence % 40 < 4) p.position_m[0] -= kWay;
+          sender.publish(kPositionsChannel, p);
+        },
+        [&] { return device_->status().dropped_implausible_speed > before + 40; });
+    trust_the_finger();
+    finish({Fault::implausible_speed});
+    if (!is_too_close_for(kWay, session_, window_)) continue;
+    expect_undisturbed();
+    return;
+  }
+  ADD_FAILURE() << "the machine never let 0.3 s pass without a pause";
 }
 
 TEST_P(HostInputAtEitherPace, ALastingJumpIsFollowedSlowlyAndWithoutForce) {
