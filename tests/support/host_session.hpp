@@ -86,8 +86,8 @@ struct ForceDifference {
   double largest = 0, rms = 0;
   double reference_rms = 0;  // of the force as it should have been
 };
-/// Where the machine kept every message waiting for longer than the timeout, the force as it should have been fades too:
-/// until it has settled again, nothing can be told.
+/// Where the machine kept every message waiting for longer than the timeout, the force as it should have been fades
+/// too: until it has settled again, nothing can be told.
 ForceDifference difference(const RecordedSession& session, const Computed& reference, Window window);
 
 }  // namespace erard::test

@@ -144,6 +144,7 @@ class DisturbedHost : public HostTest {
     end_disturbance();
   }
   void end_disturbance() {
+    EXPECT_TRUE(eventually([&] { return device_->state().device_time_ns > window_.from; }));  // viewers saw some of it
     device_->transmit();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));  // what is under way arrives
     window_.to = monotonic_time_ns();

@@ -1,6 +1,6 @@
 // Put under a program by LD_PRELOAD, sets the time of day an hour forth and back every 100 ms, and counts who looks at
-// it. Writes two lines when the program ends, the time of day and the monotonic clock: looks elsewhere, in the real-time
-// loop, behind it.
+// it. Writes two lines when the program ends, the time of day and the monotonic clock: looks elsewhere, in the
+// real-time loop, behind it.
 #include <sys/time.h>
 #include <time.h>
 
