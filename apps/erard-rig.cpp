@@ -30,7 +30,8 @@ struct Options {
   std::optional<double> notes_Hz, hold_s, dead_time_us, time_constant_us, duration;
   double lead_s = 1, depth_mm = 10, travel_ms = 40, rate_Hz = 2000, table_s = 0.1;
   int count = 10, keys = 1, priority = 75;
-  double mass_g = 100, dry_N = 0.05, viscous = 0.1, travel_mm = 13;
+  double mass_g = 100, dry_N = 0.05, viscous = 0.1;
+  double travel_mm = 15;  // 20 N through the coupling of 4000 N/m are 5 mm below the key bottom
   double noise_um = 50, resolution_um = 0, sensor_delay_us = 0;
   std::uint64_t seed = 1;
   double finger_stiffness = 1000, finger_damping = 5;

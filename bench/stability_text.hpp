@@ -11,17 +11,18 @@ computing, with
 
     build/release/bin/bench_stability
 
-- **Chosen: a = {0:g} N/m, b = {1:g} N s/m with the {2}**, in config/device.yaml. Gain margin at least {3:.2f} for levers of
-  60 and 200 g, fingers of 200 to 5000 N/m and 1 to 20 N s/m, one and two periods of delay.
-- **The whole pipeline is stable** over these, and against a rigid stop of 5e4 N/m, with 50 um of noise, both actuators, at rest, at
-  the let-off and on the key bottom: in ten seconds no command's rms grows by more than a factor {14:.2f} from one second to
-  the next, which noise alone does.
-- **The passivity controller acts in 0 % of the periods** but in one corner: a lever of 60 g on the bottom with 15 N, held by the stop
-  with no more than 1 N s/m. That loop is unstable; the controller calms it with a coupling of 500 N/m, for as long as the key is held.
-- eta of the finger's force (6.3), lever of 60 g, without the pipeline: {4} % piano, {5} % forte; with it, and with the brake, in the
-  last table but one.
-- The thesis's a = 6500 N/m, b = 134 N s/m, made for a finger in a computer, shakes a lever of 60 g on the key bottom, from one period
-  of delay on. 200 g stand it.
+- **Chosen: a = {0:g} N/m, b = {1:g} N s/m with the {2}**, in config/device.yaml. Gain margin at least {3:.2f} for
+  levers of 60 and 200 g, fingers of 200 to 5000 N/m and 1 to 20 N s/m, one and two periods of delay.
+- **The whole pipeline is stable** over these, and against a rigid stop of 5e4 N/m, with 50 um of noise, both actuators, at rest,
+  at the let-off and on the key bottom: from the last second but one of ten to the last no command's rms grows by more than a
+  factor of {14:.2f}, which noise alone does.
+- **The passivity controller acts in 0 % of the periods** but in one corner: a lever of 60 g on the bottom with 15 N, held by a
+  stop with no more than 1 N s/m. That loop is unstable; the controller calms it, for as long as the key is held, with a coupling
+  of 500 N/m.
+- eta of the finger's force (6.3), lever of 60 g, without the pipeline: {4} % piano, {5} % forte. Through it and with the brake:
+  the end of [The whole pipeline](#the-whole-pipeline).
+- The thesis's a = 6500 N/m, b = 134 N s/m, made for a finger in a computer, shakes a lever of 60 g on the key bottom, from one
+  period of delay on. 200 g stand it.
 - An observer that knows the device's own force allows a = {6:g}, b = {7:g} with a margin of {8:.2f}, and gives {9} and {10} %.
   It has to be told lever and delay, and shakes against a rigid stop with levers of 200 g too: the pipeline does not have it.
 
@@ -95,24 +96,28 @@ The softer coupling loses more: it lies in series with a finger that has a stiff
 coil: it cannot push, and takes 3 ms to follow. Taking the lever out of the simulated key helps where the lever is heavy.
 
 ## The whole pipeline
-The same holds through the host's pipeline: watch, parabola, action, passivity, guard, actuator, as config/device.yaml sets them, 50 um
-of noise. Two things that would hide a loop that shakes are left out: keys that stand still have no feedback (`still_zone_m`: then most
-of these commands are constant), and the winding stays cold, since a hot one gives a constant force. The host thinks of one period
-of delay in both cases. Cells, worst of the fingers: rms of the command above 50 Hz in the last second over that of the second before
-/ that of the last second [N] / that of the finger's force [N] / share of the periods in which the passivity controller acted [%].
+The same holds through the host's pipeline: watch, parabola, action, passivity, guard, actuator, as config/device.yaml sets them,
+50 um of noise. Two things that would hide a loop that shakes are left out: keys that stand still have no feedback (`still_zone_m`:
+then most of these commands are constant), and the winding stays cold, since a hot one gives a constant force. The host thinks of
+one period of delay in both cases. Cells, worst of the fingers: rms of the command above 50 Hz in the last second over that of the
+second before / that of the last second [N] / that of the finger's force [N] / share of the periods in which the passivity
+controller acted [%].
 Two seconds of white noise, 2000 samples each, differ by 2.2 % (one standard deviation); so a ratio up to 1.07 is no growth.
 
 )";
 
 inline constexpr const char* kWithoutPassivity = R"(
-A brake's command is noisy, its finger feels little of it. The stop with 1 N s/m, voice coil, without the passivity controller:
+The brake's command chatters: 50 um make 0.1 m/s of the rate, which passes for a key that rises, where a brake would have to push
+and gets no current. It takes 3 ms to follow, and a finger that keeps still feels 0.01 N of it.
+
+The stop with 1 N s/m, voice coil, without the passivity controller:
 
 )";
 
 inline constexpr const char* kSafe = R"(
-So it is needed on the bottom with 15 N, where the punching is stiff, and a lever of 60 g against the stop swings with 150 Hz. There a
-force of a that is late by t = 1.6 ms is a negative damping a sin(w t) / w of 4 N s/m against the 1.1 of stop and bearing, and b is late
-by a quarter of a turn itself. No damping helps: softness does. Gain margins over all fingers, both stops, levers and delays:
+So it is needed on the bottom with 15 N, where the punching is stiff, and a lever of 60 g against the stop swings with 150 Hz. There
+a force of a that is late by t = 1.6 ms is a negative damping a sin(w t) / w of 4 N s/m against the 1.1 of stop and bearing, and b
+is late by a quarter of a turn itself. No damping helps: softness does. Gain margins over all fingers, both stops, levers, delays:
 
 )";
 
@@ -121,11 +126,11 @@ So the safe coupling is 500 N/m with 1 N s/m. It gives way: pressed with 3 N the
 stop, until the key is let go.
 
 Noise does not set the controller off: it may look like sigma^2 (3 b / 2 T + a) / T = 0.16 W of energy from nothing, which is
-allowed for; with the thesis's 134 N s/m it would be 2 W. Nor does a limit set it off any more: while a limit or a hot winding holds the force back, the account stands. It used to act
-when a coil that had been held at 15 N for nine seconds folded back.
+allowed for; with the thesis's 134 N s/m it would be 2 W. Nor does a limit: while one, or a hot winding, holds the force back, the
+account stands. If it did not, a coil that folds back after eight seconds at 15 N would set the controller off.
 
-What a finger feels through the pipeline, the file as it is; the stroke and the finger of the section before. Cells: eta [%] / RMS [N]
-/ speed of the first hammer blow [%] / share of the periods in which the passivity controller acted [%].
+What a finger feels through the pipeline, the file as it is; strokes and finger of the section before. Cells: eta [%] / RMS [N] /
+speed of the first hammer blow [%] / share of the periods in which the passivity controller acted [%].
 
 )";
 

@@ -13,7 +13,7 @@ struct LeverSettings {
   double viscous = 0.1;         // d [N s/m]
   double return_force = 0;      // of a spring that lifts the lever, at the upper stop [N]
   double return_stiffness = 0;  // of the same [N/m]
-  double depth = 0.016;         // of the lower stop under the upper one, which is at 0 [m]
+  double depth = 0.015;         // of the lower stop under the upper one, which is at 0; a key bottom and 20 N [m]
 };
 
 /// The finger's skin and joints, seen by the lever: it pushes and cannot pull.
