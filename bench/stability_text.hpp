@@ -97,7 +97,7 @@ coil: it cannot push, and takes 3 ms to follow. Taking the lever out of the simu
 
 ## The whole pipeline
 The same holds through the host's pipeline: watch, parabola, action, passivity, guard, actuator, as config/device.yaml sets them,
-50 um of noise. Two things that would hide a loop that shakes are left out: keys that stand still have no feedback (`still_zone_m`:
+50 um of noise. Two things that hide a loop that shakes are left out: keys that stand still have no feedback (`still_zone_m`:
 then most of these commands are constant), and the winding stays cold, since a hot one gives a constant force. The host thinks of
 one period of delay in both cases. Cells, worst of the fingers: rms of the command above 50 Hz in the last second over that of the
 second before / that of the last second [N] / that of the finger's force [N] / share of the periods in which the passivity
@@ -115,7 +115,7 @@ The stop with 1 N s/m, voice coil, without the passivity controller:
 )";
 
 inline constexpr const char* kSafe = R"(
-So it is needed on the bottom with 15 N, where the punching is stiff, and a lever of 60 g against the stop swings with 150 Hz. There
+So it is needed at 15 N on the bottom, where the punching is stiff, and a lever of 60 g against the stop swings with 150 Hz. There
 a force of a that is late by t = 1.6 ms is a negative damping a sin(w t) / w of 4 N s/m against the 1.1 of stop and bearing, and b
 is late by a quarter of a turn itself. No damping helps: softness does. Gain margins over all fingers, both stops, levers, delays:
 

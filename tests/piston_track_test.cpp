@@ -146,6 +146,19 @@ TEST(PistonTrack, StandsToTheBitWhenTheKeyStandsButForNoise) {
   EXPECT_GT(restless(2e-4), 10000);  // and one and a half times this
 }
 
+TEST(PistonTrack, StandsInTheMiddleOfTheNoise) {
+  std::normal_distribution<double> error(0, 5e-5);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Track track(PistonTrackSettings{});
+    std::mt19937 random(seed);
+    track.resume(0.004);
+    for (int i = 0; i < 2000; ++i) track.take(0.004 + error(random));
+    ASSERT_TRUE(track.track.is_still());
+    // six times 50 um / sqrt(100), and what is left of an offset, a 64th of the zone
+    EXPECT_NEAR(track.track.piston().value, 0.004, 3.5e-5) << seed;
+  }
+}
+
 struct Departure {
   double largest_step = 0, fastest = 0, last_miss = 0;  // [m], [m/s], [m]
 };

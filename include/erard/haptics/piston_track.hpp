@@ -77,7 +77,7 @@ class PistonTrack {
     const double most = is_aligned() || is_force_off ? settings.realign_speed * period : 0;
     const double closed = std::clamp(offset_ * std::min(period / settings.realign_time, 1.0), -most, most);
     offset_ -= std::abs(offset_) < kNothing ? offset_ : closed;
-    piston_ = is_still_ ? DriveSample{piston_.value, 0} : DriveSample{x_ + offset_, rate_ - closed / period};
+    piston_ = {x_ + offset_, is_still_ ? 0 : rate_ - closed / period};
     return piston_;
   }
 
@@ -117,9 +117,11 @@ class PistonTrack {
     if (count_ > 0 && !is_near(settings, x_, sum_ / count_)) sum_ = 0, count_ = 0;
     sum_ += x_;
     ++count_;
-    if (count_ * period < settings.still_time || std::abs(offset_) > settings.still_zone / kQuieter) return;
+    if (count_ * period < settings.still_time || std::abs(offset_) > settings.still_zone / (kQuieter * kQuieter))
+      return;
     is_still_ = true;
     middle_ = sum_ / count_;
+    x_ = middle_;
   }
 
   double middle_ = 0;  // of the samples of a key that stands still [m]
