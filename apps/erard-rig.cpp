@@ -39,7 +39,7 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& o) {
-  const auto range = [](double least, double most) { return CLI::Range(least, most); };
+  const auto range = number_from;
   app.add_option("KEYSTROKE", o.keystroke,
                  "what the finger means to do, CSV with t_s and position_m (default: config/keystrokes/forte.csv)");
   app.add_option("--notes", o.notes_Hz, "repeated notes instead, so many a second")->check(range(0.1, 30));
@@ -51,7 +51,7 @@ void add_options(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--lead", o.lead_s, "seconds before the finger moves")->check(range(0, 3600))->capture_default_str();
   app.add_option("--duration", o.duration, "end after so many seconds (default: half a second after the motion)")
-      ->check(CLI::PositiveNumber);
+      ->check(range(0.001, 1e6));
   app.add_option("--lever-mass", o.mass_g, "at the finger, in g")->check(range(1, 5000))->capture_default_str();
   app.add_option("--lever-friction", o.dry_N, "dry, in N")->check(range(0, 20))->capture_default_str();
   app.add_option("--lever-viscous", o.viscous, "in N s/m")->check(range(0, 100))->capture_default_str();

@@ -22,6 +22,16 @@ inline void complain(std::string message) {
   std::fputs((message + '\n').c_str(), stderr);  // which may be closed
 }
 
+/// Of an option: a number from `least` to `most`, which CLI::Range takes "nan" for as well.
+inline CLI::Validator number_from(double least, double most) {
+  const auto check = [least, most](const std::string& word) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(word, value) && value >= least && value <= most) return {};
+    return fmt::format("Value {} not in range {:g} to {:g}", word, least, most);
+  };
+  return CLI::Validator(check, fmt::format("FLOAT in [{:g} - {:g}]", least, most));
+}
+
 /// Parses the arguments into what `app` was told of, then runs. Adds --version.
 /// @param app  its name is the program's
 /// @param run  int(): the exit code

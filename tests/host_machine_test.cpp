@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "erard/device/verification.hpp"
 #include "support/host_test.hpp"
 
@@ -27,6 +29,14 @@ TEST_F(HostMachine, AStoppedHostLeavesNoForceThatHoldsAndGoesOnByItself) {
   end_disturbance();
   finish({Fault::period_missed, Fault::no_input});
   expect_key_stays_down(window_);
+  // the device has let go meanwhile: the first force afterwards is zero, not a blow
+  const std::vector<forces_t>& forces = device_->heard().forces;
+  const auto back = std::adjacent_find(forces.begin(), forces.end(), [](const forces_t& a, const forces_t& b) {
+    return a.device_time_ns > 0 && b.device_time_ns - a.device_time_ns > 200'000'000;  // the very first has no time
+  });
+  ASSERT_NE(back, forces.end());
+  EXPECT_GT(back->force_N[0], 1);
+  EXPECT_EQ(std::next(back)->force_N[0], 0);
 }
 
 TEST_F(HostMachine, AFullDiskEndsTheRecordingAndNothingElse) {

@@ -109,6 +109,24 @@ TEST(Renderer, SilenceFadesTheForceToZeroAndRecoversWithoutAReset) {
   EXPECT_NEAR(device.play(0.0103).force, force, 0.01 * force);
 }
 
+TEST(Renderer, AfterAPauseOfTheHostTheForceBeginsAtZeroAndFadesIn) {
+  // the device has let go meanwhile: a force as before would be a blow
+  Device device = pressed();
+  const double force = device.play(0.0103).force;
+  ASSERT_GT(force, 2);
+  device.pause(0.3);
+  const RenderSettings& settings = device.renderer.settings();
+  double last = 0, back = 0;
+  for (double fade = 0; fade < 1 && back < 1; back += kT) {
+    const KeyOutput& key = device.play(0.0103);
+    EXPECT_LE(key.force - last, force * 1.01 * kT / settings.guard.fade_time + kRounding);
+    last = key.force;
+    fade = key.fade;
+  }
+  EXPECT_NEAR(back, settings.watch.recovery_samples * kT + settings.guard.fade_time, 3 * kT);
+  EXPECT_NEAR(last, force, 0.01 * force);
+}
+
 TEST(Renderer, KeyThatIsElsewhereAfterASilenceComesBackSoftlyAndWithoutABlow) {
   for (const auto& [from, to] : {std::pair{0.0, 0.010}, std::pair{0.010, 0.0}, std::pair{0.010, 0.005}}) {
     Device device(action(), test::exact_rendering());

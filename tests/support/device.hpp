@@ -47,6 +47,8 @@ class Device {
   void rest(double seconds, double position = 0) {
     for (double t = 0; t < seconds; t += renderer.settings().tick.period) play(position);
   }
+  /// Neither messages nor periods.
+  void pause(double seconds) { time_ += std::llround(seconds * 1e9); }
   std::int64_t time() const { return time_; }
 
   Renderer renderer;

@@ -44,6 +44,9 @@ class Guard {
     return force_;
   }
 
+  /// The device has let go by itself: the force begins at zero again.
+  void let_go() noexcept { force_ = fade_ = 0; }
+
   double force() const noexcept { return force_; }  // [N]
   double fade() const noexcept { return fade_; }    // 0 .. 1
 

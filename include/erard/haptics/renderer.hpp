@@ -98,6 +98,7 @@ class Renderer {
   const PeriodOutput& period(const PeriodInput& in) noexcept {
     result_ = {};
     result_.host_time = in.host_time;
+    notice_pause(in.host_time);
     take_messages(in);
     for (int k = 0; k < size(); ++k) follow(k, in);
     blow_count_ = 0;
@@ -157,6 +158,14 @@ class Renderer {
     if (s.tick.drive != DriveKind::piston) return 0;
     const double noise = s.passivity.sensor_noise;
     return (1.5 * s.coupling.damping / s.tick.period + s.coupling.stiffness) * noise * noise;
+  }
+
+  /// A force holds for the timeout: after a longer pause of the host the device has let go by itself, and a force as
+  /// before would be a blow.
+  void notice_pause(std::int64_t host_time) noexcept {
+    if (static_cast<double>(host_time - last_period_) * 1e-9 > settings_.watch.timeout)
+      for (Key& key : key_) key.guard.let_go();
+    last_period_ = host_time;
   }
 
   /// The newest message that counts; those before it in the same period are as good as lost to the estimators.
@@ -276,6 +285,7 @@ class Renderer {
   double period_;        // [s]
   double noise_energy_;  // n of Passivity [J]
   MessageWatch message_watch_;
+  std::int64_t last_period_ = 0;  // host time [ns]
   Keyboard keyboard_;
   std::vector<Key> key_;
   std::vector<DriveSample> input_;
