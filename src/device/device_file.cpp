@@ -101,12 +101,12 @@ Coupling read_coupling(YamlSection section) {
   return coupling;
 }
 
-void read_passivity(YamlSection section, double period, PassivitySettings& p) {
+void read_passivity(YamlSection section, PassivitySettings& p) {
   p.is_on = yes_or_no(section, "on");
   p.reserve = number(section, "reserve_J", kPositive);
   p.safe_coupling = read_coupling(section.section("safe_coupling"));
   p.device_damping = number(section, "device_damping_N_s_per_m", kNotNegative);
-  p.loop_delay = number(section, "loop_delay_s", from_to(0, Passivity::kMaxDelay * period));
+  p.loop_delay = number(section, "loop_delay_s", from_to(0, Passivity::kLongestDelay));
   p.hold_time = number(section, "hold_s", kNotNegative);
   section.finish();
 }
@@ -196,7 +196,7 @@ DeviceSettings load_device(const ConfigText& config) {
   } else if (device.optional("coupling")) {
     device.reject(device.line("coupling"), "coupling has no effect with drive = key, remove it or set drive: piston");
   }
-  read_passivity(device.section("passivity"), period, rendering.passivity);
+  read_passivity(device.section("passivity"), rendering.passivity);
   read_limits(device.section("limits"), rendering.guard);
   read_actuator(device.section("actuator"), rendering.actuator);
   settings.real_time = read_real_time(device.section("real_time"), period);

@@ -64,7 +64,7 @@ struct JointEnergy {
 /// energy out of nothing. docs/device.md
 class Passivity {
  public:
-  static constexpr int kMaxDelay = 6;  // periods
+  static constexpr double kLongestDelay = 3e-3;  // of the loop [s]
 
   /// Takes account of the last period. @param noise_energy  n [J]
   void observe(const PassivitySettings& settings, double period, double noise_energy, const JointEnergy& now) noexcept {
@@ -104,6 +104,7 @@ class Passivity {
   double surplus() const noexcept { return surplus_; }  // D [J]
 
  private:
+  static constexpr int kMaxDelay = 150;  // periods: the longest delay at 50 kHz
   static constexpr int kMemory = kMaxDelay + 2;
 
   /// Mean over the period that ends now of the force on the key: it was asked for loop_delay earlier.
