@@ -15,6 +15,9 @@
 #include "erard/device/host.hpp"
 #include "erard/device/session.hpp"
 #include "program.hpp"
+#ifdef ERARD_WITH_LANES
+#include "erard/lanes/key_lanes.hpp"
+#endif
 
 namespace {
 
@@ -162,6 +165,15 @@ void check(const CLI::App& app, const Options& o) {
   if (app.count("--record") > 0 && o.record.empty()) throw InputError("--record: its name is empty, name a file");
 }
 
+/// Many keys go together in the lanes of vector registers, where this build has them; the forces are the same to the bit.
+MakePlayer player_for([[maybe_unused]] int keys) {
+#ifdef ERARD_WITH_LANES
+  constexpr int kWorthIt = 8;  // keys: below, lanes are mostly empty
+  if (keys >= kWorthIt) return [](Keyboard& keyboard) { return std::make_unique<KeyLanes>(keyboard); };
+#endif
+  return {};
+}
+
 int run(const Options& o) {
   const std::filesystem::path config = o.device.empty() || o.action.empty() ? config_dir() : "";
   Session session;
@@ -176,7 +188,7 @@ int run(const Options& o) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { is_interrupted = true; });
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);  // a screen or a disk that is no more
   HostOptions options{o.pace == "messages" ? HostPace::messages : HostPace::clock, o.record, o.fault_folder,
-                      to_text(session)};
+                      to_text(session), player_for(parts.settings.rendering.keys)};
   Host host(parts.action, parts.settings, options);
   say(stdout, "{}", grant_table(host.grants()));
   if (!host.is_real_time() && !o.is_best_effort)

@@ -5,6 +5,7 @@
 
 #include "erard/lanes/key_lanes.hpp"
 #include "support/heap_calls.hpp"
+#include "support/device.hpp"
 #include "support/scenes.hpp"
 
 namespace erard {
@@ -131,6 +132,28 @@ TEST_P(EverySet, LetsKeysSleepAndWakeAsTheScalarEngineDoes) {
     expect_same(result, "sleep");
     EXPECT_LT(result.count.in_lanes, 3 * 3000);  // of 4 x 3000: they did sleep
   }
+}
+
+TEST_P(EverySet, RendersTheForcesOfTheScalarEngine) {
+  RenderSettings settings;
+  settings.keys = 5;
+  const ActionFile action = test::grand_action();
+  test::Device scalar(action, settings), laned(action, settings);
+  KeyLanes lanes(laned.renderer.keyboard(), GetParam());
+  laned.renderer.play_by(&lanes);
+  const Keystroke forte = test::keystroke("forte");
+  const std::vector<Part> parts = spread(forte, 0.7);
+  std::vector<double> positions(5);
+  std::size_t blows = 0;
+  for (int i = 0; i < 1600; ++i) {
+    for (std::size_t k = 0; k < 5; ++k) positions[k] = parts[k].at(5e-4 * i - 0.1).value;
+    const PeriodOutput &truth = scalar.send(positions), &out = laned.send(positions);
+    for (std::size_t k = 0; k < 5; ++k) ASSERT_EQ(truth.key[k].force, out.key[k].force) << i;
+    ASSERT_EQ(truth.blow.size(), out.blow.size());
+    blows += out.blow.size();
+  }
+  EXPECT_GE(blows, 4u);
+  EXPECT_GT(lanes.count().in_lanes, 1000);
 }
 
 TEST_P(EverySet, KeepsToTheStepBudgetAsTheScalarEngineDoes) {

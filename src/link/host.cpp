@@ -64,6 +64,10 @@ Host::Host(const ActionFile& action, const DeviceSettings& settings, const HostO
       force_sender_(settings.link.forces_url),
       status_sender_(settings.link.forces_url),
       loop_(loop_settings(settings)) {
+  if (options_.make_player) {
+    player_ = options_.make_player(renderer_->keyboard());
+    renderer_->play_by(player_.get());
+  }
   thread_ = std::thread([this] { work(); });
   asked_.get_future().wait();
   const int listening = receiver_.listener().granted_priority();

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -22,11 +23,15 @@ enum class HostPace {
   messages,  // the arrival of positions; the clock where none come
 };
 
+/// Makes who advances the keys of a host.
+using MakePlayer = std::function<std::unique_ptr<KeyboardPlayer>(Keyboard&)>;
+
 struct HostOptions {
   HostPace pace = HostPace::clock;
   std::filesystem::path record;        // file of the session; empty: none
   std::filesystem::path fault_folder;  // of what is saved on a fault; empty: nothing is
   std::string session;                 // text that a recording begins with
+  MakePlayer make_player;              // empty: the keyboard advances itself
 };
 
 /// Threads: listening (the receiver's), real-time, recording, and the caller's, which asks for status.
@@ -73,6 +78,7 @@ class Host {
   DeviceSettings settings_;
   HostOptions options_;
   std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<KeyboardPlayer> player_;
   Recorder recorder_;
   Receiver<positions_t> receiver_;
   Sender force_sender_, status_sender_;

@@ -245,4 +245,16 @@ class Keyboard {
   std::unique_ptr<Workspace> work_;
 };
 
+/// Somebody who advances a keyboard by the same steps in another way: KeyLanes of erard::lanes.
+class KeyboardPlayer {
+ public:
+  /// Called after each internal step of a key.
+  using Observer = void (*)(void* context, int key, const State& state, const StepReport& report,
+                            double force) noexcept;
+  virtual ~KeyboardPlayer() = default;
+  /// As Keyboard::tick(), which see.
+  virtual std::span<const double> tick(std::span<const DriveSample> inputs, Observer observer,
+                                       void* context) noexcept = 0;
+};
+
 }  // namespace erard

@@ -24,7 +24,7 @@ namespace erard {
 struct RenderSettings {
   int keys = 1;                  // 1 .. 88
   TickSettings tick;             // drive piston or key, rate
-  double max_steps_per_s = 4e5;  // internal, of all keys together; where they need more each is computed less finely
+  double max_steps_per_s = 2e5;  // internal, of all keys together; where they need more each is computed less finely
   SleepSettings sleep = SleepSettings::eager();
   Coupling coupling{4000, 9};  // between device and simulated key, of the drive `piston`; docs/stability.md
   PositionWatchSettings watch;
@@ -90,6 +90,10 @@ class Renderer {
   int size() const noexcept { return settings_.keys; }
   const RenderSettings& settings() const noexcept { return settings_; }
   const Keyboard& keyboard() const noexcept { return keyboard_; }
+  Keyboard& keyboard() noexcept { return keyboard_; }
+
+  /// From now on `player` advances the keyboard, which is its own; it must outlive this. Null: the keyboard itself.
+  void play_by(KeyboardPlayer* player) noexcept { player_ = player; }
   const FaultCounters& counters() const noexcept { return counters_; }
   std::int64_t accepted_messages() const noexcept { return accepted_messages_; }
   std::uint64_t lost_messages() const noexcept { return lost_messages_; }  // by their sequence
@@ -102,8 +106,7 @@ class Renderer {
     take_messages(in);
     for (int k = 0; k < size(); ++k) follow(k, in);
     blow_count_ = 0;
-    const std::span<const double> forces = keyboard_.tick(
-        input_, [this](int k, const State& state, const StepReport&, double force) noexcept { see(k, state, force); });
+    const std::span<const double> forces = play();
     for (int k = 0; k < size(); ++k) render(k, forces[k]);
     result_.faults |= result_.message;
     if (keyboard_.budget().level() > 0) {
@@ -119,6 +122,18 @@ class Renderer {
 
  private:
   static constexpr int kNormal = 0, kSafe = 1;  // models of the keyboard
+
+  /// One period of the actions. @return the simulated force of each [N]
+  std::span<const double> play() noexcept {
+    if (player_ == nullptr)
+      return keyboard_.tick(input_, [this](int k, const State& state, const StepReport&, double force) noexcept {
+        see(k, state, force);
+      });
+    const auto look = [](void* self, int k, const State& state, const StepReport&, double force) noexcept {
+      static_cast<Renderer*>(self)->see(k, state, force);
+    };
+    return player_->tick(input_, look, this);
+  }
 
   static int most_steps(const RenderSettings& settings) noexcept {
     constexpr double kMost = StepBudget::kUnbounded;
@@ -287,6 +302,7 @@ class Renderer {
   MessageWatch message_watch_;
   std::int64_t last_period_ = 0;  // host time [ns]
   Keyboard keyboard_;
+  KeyboardPlayer* player_ = nullptr;
   std::vector<Key> key_;
   std::vector<DriveSample> input_;
   std::vector<KeyOutput> output_;

@@ -19,9 +19,7 @@ namespace erard {
 /// at a time.
 class LanePlayer {
  public:
-  /// Called after each internal step of a key as observer(context, key, state, report, force).
-  using Observer = void (*)(void* context, int key, const State& state, const StepReport& report,
-                            double force) noexcept;
+  using Observer = KeyboardPlayer::Observer;
 
   /// @param mechanisms  by Turn::model; they must outlive the player
   /// @param set         must be available
@@ -44,28 +42,30 @@ class LanePlayer {
 };
 
 /// A Keyboard advanced in lanes, on one thread. The keyboard must outlive it and be advanced by nobody else meanwhile.
-class KeyLanes {
+class KeyLanes final : public KeyboardPlayer {
  public:
   explicit KeyLanes(Keyboard& keyboard, InstructionSet set = best_instruction_set())
       : keyboard_(keyboard),
         player_(keyboard.mechanisms(), keyboard.size(), set),
         turns_(static_cast<std::size_t>(keyboard.size())) {}
 
-  /// As Keyboard::tick(), which see. The observer sees the steps of each key in their order, keys mixed.
-  template <typename Observer>
-  std::span<const double> tick(std::span<const DriveSample> inputs, Observer&& observer) noexcept {
-    using Callee = std::remove_reference_t<Observer>;
-    const auto pass_on = [](void* context, int key, const State& state, const StepReport& report,
-                            double force) noexcept { (*static_cast<Callee*>(context))(key, state, report, force); };
+  /// The observer sees the steps of each key in their order, keys mixed.
+  std::span<const double> tick(std::span<const DriveSample> inputs, Observer observer,
+                               void* context) noexcept override {
     keyboard_.begin_tick(inputs);
     keyboard_.tick_share_by(
-        [&](std::span<Turn> turns) noexcept {
-          player_.play(keyboard_.budget().settings(), turns, pass_on,
-                       const_cast<void*>(static_cast<const void*>(&observer)));
-        },
+        [&](std::span<Turn> turns) noexcept { player_.play(keyboard_.budget().settings(), turns, observer, context); },
         0, 1, inputs, turns_);
     keyboard_.end_tick();
     return keyboard_.forces();
+  }
+  template <typename Callee>
+  std::span<const double> tick(std::span<const DriveSample> inputs, Callee&& observer) noexcept {
+    const auto pass_on = [](void* context, int key, const State& state, const StepReport& report,
+                            double force) noexcept {
+      (*static_cast<std::remove_reference_t<Callee>*>(context))(key, state, report, force);
+    };
+    return tick(inputs, pass_on, const_cast<void*>(static_cast<const void*>(&observer)));
   }
   std::span<const double> tick(std::span<const DriveSample> inputs) noexcept {
     return tick(inputs, [](int, const State&, const StepReport&, double) noexcept {});
