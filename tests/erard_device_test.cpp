@@ -145,6 +145,31 @@ TEST_F(ErardDeviceSession, ABitThatWasFlippedIsFound) {
   expect_one_sentence(verify(), {log().string(), "forces_t"});
 }
 
+TEST_F(ErardDeviceSession, PlaysWhatLcmsOwnLoggerHeardAndItsPlayerSendsAgain) {
+  if (std::system("command -v lcm-logger > /dev/null && command -v lcm-logplayer > /dev/null") != 0)
+    GTEST_SKIP() << "LCM's tools are not installed (liblcm-bin)";
+  start();
+  device_->fall_silent();
+  const std::string file = folder_ / "heard.lcm", url = " --lcm-url='udpm://239.255.76.67:7667?ttl=0' ";
+  std::thread logger([&] {
+    std::system(("timeout --signal=INT 3 lcm-logger" + url + file + " > " + file + ".out 2>&1").c_str());
+  });
+  ASSERT_TRUE(eventually([&] { return test::fs::exists(file); }));
+  Child replay("erard-replay", {ERARD_CONFIG_DIR "/keystrokes/forte.csv"});
+  EXPECT_EQ(replay.wait().exit_code, 0);
+  logger.join();
+  ASSERT_TRUE(eventually([&] { return device_->heard().blows.size() == 1; }));
+  const std::int64_t before = device_->status().positions_accepted;
+  // its messages are as old as the log: the host goes by what they say of one another
+  ASSERT_EQ(std::system(("lcm-logplayer" + url + file + " > /dev/null 2>&1").c_str()), 0);
+  ASSERT_TRUE(eventually([&] { return device_->heard().blows.size() == 2; }));
+  EXPECT_TRUE(eventually([&] { return device_->status().positions_accepted > 2 * before - 50; }));
+  const std::vector<hammer_event_t> blows = device_->heard().blows;
+  // the player keeps the pace of the log by sleeping; 3 % of jitter in the rate of the key
+  EXPECT_NEAR(blows[1].speed_m_per_s, blows[0].speed_m_per_s, 0.03 * blows[0].speed_m_per_s);
+  stop();
+}
+
 TEST_F(ErardDeviceSession, CtrlCLeavesTheWholeReportAndACompleteFileHoweverOftenItComes) {
   start();
   press();
