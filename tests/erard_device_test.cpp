@@ -145,15 +145,29 @@ TEST_F(ErardDeviceSession, ABitThatWasFlippedIsFound) {
   expect_one_sentence(verify(), {log().string(), "forces_t"});
 }
 
+TEST_P(ErardDeviceAtEitherPace, ADeviceThatSendsTwiceAsFastDoesNotHastenTheSimulation) {
+  start({"--pace", GetParam()});
+  device_->fall_silent();
+  const Child replay("erard-replay", {ERARD_CONFIG_DIR "/keystrokes/forte.csv", "--rate", "4000", "--loop"});
+  ASSERT_TRUE(eventually([&] { return device_->status().positions_accepted > 1000; }));
+  const host_status_t before = device_->status();
+  ASSERT_TRUE(eventually([&] { return device_->status().device_time_ns > before.device_time_ns + 1'000'000'000; }));
+  const host_status_t after = device_->status();
+  const double seconds = 1e-9 * static_cast<double>(after.device_time_ns - before.device_time_ns);
+  // the clock may be led by 1 us a period; a machine that stalls makes it fewer
+  EXPECT_LT(static_cast<double>(after.periods - before.periods), 1.02 * 2000 * seconds);
+  EXPECT_GT(after.positions_accepted, before.positions_accepted + 500);
+  stop();
+}
+
 TEST_F(ErardDeviceSession, PlaysWhatLcmsOwnLoggerHeardAndItsPlayerSendsAgain) {
   if (std::system("command -v lcm-logger > /dev/null && command -v lcm-logplayer > /dev/null") != 0)
     GTEST_SKIP() << "LCM's tools are not installed (liblcm-bin)";
   start();
   device_->fall_silent();
   const std::string file = folder_ / "heard.lcm", url = " --lcm-url='udpm://239.255.76.67:7667?ttl=0' ";
-  std::thread logger([&] {
-    std::system(("timeout --signal=INT 3 lcm-logger" + url + file + " > " + file + ".out 2>&1").c_str());
-  });
+  std::thread logger(
+      [&] { std::system(("timeout --signal=INT 3 lcm-logger" + url + file + " > " + file + ".out 2>&1").c_str()); });
   ASSERT_TRUE(eventually([&] { return test::fs::exists(file); }));
   Child replay("erard-replay", {ERARD_CONFIG_DIR "/keystrokes/forte.csv"});
   EXPECT_EQ(replay.wait().exit_code, 0);

@@ -49,6 +49,15 @@ std::int64_t settled_error(double ppm, std::int64_t jitter, std::int64_t begins_
   return error;
 }
 
+TEST(PhaseLock, LeadsAGridPointOntoTheInstantItBelongsToHoweverFarAway) {
+  const PhaseLock lock({500'000, 0});
+  EXPECT_GT(lock.shift(300'000, 0), 0);       // the next instant of that clock is the nearer one
+  EXPECT_LT(lock.shift_onto(300'000, 0), 0);  // this one is meant
+  std::int64_t due = 400'000;
+  for (int i = 0; i < 2000; ++i) due += lock.shift_onto(due, 0);
+  EXPECT_LE(std::abs(due), 32);  // half of 1 / gain: less rounds to no shift
+}
+
 TEST(PhaseLock, BringsTheLoopToItsPlaceAndHoldsIt) {
   // rounding to whole ns stops the correction where gain * error < 1/2: 32 ns
   EXPECT_LE(std::abs(settled_error(0, 0, 40 * us, 2000)), 32);

@@ -125,17 +125,18 @@ void Host::work() {
   jitter_ns_ = measure_jitter();
   asked_.set_value();
   if (!answer_.get_future().get()) return;
-  const bool follows_messages = options_.pace == HostPace::messages;
-  period_ = std::make_unique<HostPeriod>(settings_, receiver_, force_sender_, *renderer_, recorder_, loop_,
-                                         !follows_messages);
+  period_ =
+      std::make_unique<HostPeriod>(settings_, receiver_, force_sender_, *renderer_, recorder_, loop_, options_.pace);
   prctl(PR_SET_NAME, "erard-loop");  // until it has another name: no heap, no lock
   begun_.set_value();
-  if (follows_messages) {
-    // a message that is late is waited for: half a period, then the period goes without
-    const std::int64_t patience = loop_.settings().period_ns / 2;
-    summary_ = loop_.run(*period_, [this, patience](std::int64_t due) noexcept {
-      receiver_.wait(due + patience);
-      return MonotonicClock{}.now();
+  if (options_.pace == HostPace::messages) {
+    // One that is early waits: half a period before the clock is the earliest, or a fast device would hasten the
+    // simulation. One that is late is waited for: half a period, then the period goes without.
+    const std::int64_t tolerance = loop_.settings().period_ns / 2;
+    summary_ = loop_.run(*period_, [this, tolerance](std::int64_t due) noexcept {
+      MonotonicClock{}.sleep_until(due - tolerance);
+      receiver_.wait(due + tolerance);
+      return due;  // the clock goes on, led by the period's work
     });
   } else {
     summary_ = loop_.run(*period_);

@@ -28,15 +28,15 @@ PositionMessage position_message(const positions_t& p) noexcept {
 }
 
 HostPeriod::HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& positions, Sender& sender,
-                       Renderer& renderer, Recorder& recorder, PeriodicLoop<>& loop, bool is_steered)
+                       Renderer& renderer, Recorder& recorder, PeriodicLoop<>& loop, HostPace pace)
     : settings_(settings),
       positions_(positions),
       sender_(sender),
       renderer_(renderer),
       recorder_(recorder),
       loop_(loop),
-      lock_({loop.settings().period_ns, 1000LL * settings.real_time.phase_us}),
-      is_steered_(is_steered),
+      lock_({loop.settings().period_ns, pace == HostPace::clock ? 1000LL * settings.real_time.phase_us : 0}),
+      pace_(pace),
       publisher_(draw_publisher_id()),
       validity_ns_(static_cast<std::int64_t>(std::llround(1e9 * settings.rendering.watch.timeout))) {
   forces_ = {};
@@ -210,12 +210,15 @@ void HostPeriod::show(const Period& period, const PeriodOutput& out) noexcept {
 }
 
 /// Keeps the grid at the chosen delay behind the device: behind its samples where it reads the same clock, else behind
-/// the arrival of its messages.
+/// the arrival of its messages; or at that arrival, where it begins the periods.
 void HostPeriod::steer(const Period& period) noexcept {
-  if (!is_steered_ || arrived_count_ == 0) return;
+  if (arrived_count_ == 0) return;
   const Arrival<positions_t>& newest = arrived_[static_cast<std::size_t>(arrived_count_ - 1)];
   const std::int64_t device_time = newest.message.device_time_ns;
-  loop_.shift(lock_.shift(period.due_ns, shares_clock(device_time, newest.time_ns) ? device_time : newest.time_ns));
+  if (pace_ == HostPace::messages)
+    loop_.shift(lock_.shift_onto(period.due_ns, newest.time_ns));
+  else
+    loop_.shift(lock_.shift(period.due_ns, shares_clock(device_time, newest.time_ns) ? device_time : newest.time_ns));
 }
 
 }  // namespace erard

@@ -17,12 +17,6 @@
 
 namespace erard {
 
-/// What begins a period.
-enum class HostPace {
-  clock,     // the host's own, kept at the chosen delay behind the device
-  messages,  // the arrival of positions; the clock where none come
-};
-
 /// Makes who advances the keys of a host.
 using MakePlayer = std::function<std::unique_ptr<KeyboardPlayer>(Keyboard&)>;
 

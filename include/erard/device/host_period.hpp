@@ -15,6 +15,13 @@
 
 namespace erard {
 
+/// What begins a period. Either way one begins in each period of the host's clock: a device that sends faster does not
+/// hasten the simulation.
+enum class HostPace {
+  clock,     // the host's own, kept at the chosen delay behind the device
+  messages,  // the arrival of positions, at most half a period before or after the clock, which follows them
+};
+
 /// What the real-time thread tells the slower ones, once a period.
 struct HostNews {
   FaultCounters faults;                           // messages, or keys times periods
@@ -51,11 +58,10 @@ inline constexpr int kRecordedPositions = 0, kRecordedForces = 1;
 /// The work of the real-time loop. No heap, no exception, no lock; the one thing that enters the kernel is sending.
 class HostPeriod {
  public:
-  /// @param is_steered  the loop follows a clock of its own, to be kept in step with the device
   /// The parts must outlive it. Publishes once, so that LCM has taken its memory: call it from the real-time thread.
   /// Positions that came before are dropped, uncounted: the action begins with what is so now.
   HostPeriod(const DeviceSettings& settings, Receiver<positions_t>& positions, Sender& sender, Renderer& renderer,
-             Recorder& recorder, PeriodicLoop<>& loop, bool is_steered);
+             Recorder& recorder, PeriodicLoop<>& loop, HostPace pace);
 
   /// @return whether the loop goes on
   bool operator()(const Period& period) noexcept;
@@ -90,7 +96,7 @@ class HostPeriod {
   Recorder& recorder_;
   PeriodicLoop<>& loop_;
   PhaseLock lock_;
-  bool is_steered_;
+  HostPace pace_;
   std::atomic<bool> is_to_let_go_{false};
   bool is_letting_go_ = false;  // as of this period
   std::int64_t publisher_;

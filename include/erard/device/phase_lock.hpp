@@ -35,11 +35,21 @@ class PhaseLock {
 
   /// What to move the grid by, for PeriodicLoop::shift() [ns].
   std::int64_t shift(std::int64_t due, std::int64_t observed) const noexcept {
-    const auto wanted = std::llround(settings_.gain * static_cast<double>(error(due, observed)));
-    return -std::clamp<std::int64_t>(wanted, -settings_.max_slew_ns, settings_.max_slew_ns);
+    return correction(error(due, observed));
+  }
+
+  /// The same for a grid point that belongs to just this instant of the other clock, however far away: e = due -
+  /// (observed + delay).
+  std::int64_t shift_onto(std::int64_t due, std::int64_t observed) const noexcept {
+    return correction(due - observed - settings_.delay_ns);
   }
 
  private:
+  std::int64_t correction(std::int64_t error) const noexcept {
+    const auto wanted = std::llround(settings_.gain * static_cast<double>(error));
+    return -std::clamp<std::int64_t>(wanted, -settings_.max_slew_ns, settings_.max_slew_ns);
+  }
+
   PhaseLockSettings settings_;
 };
 
