@@ -22,9 +22,9 @@ using Bits = xsimd::batch<std::uint64_t, typename T::arch_type>;
 
 // xsimd 8 has neither of these two for all instruction sets
 
-/// x y + z, rounded once.
+/// x y + z, rounded once; of kIsFused alone.
 template <typename T>
-T fused(const T& x, const T& y, const T& z) noexcept {
+T fused([[maybe_unused]] const T& x, [[maybe_unused]] const T& y, [[maybe_unused]] const T& z) noexcept {
 #ifdef __AVX512F__
   return _mm512_fmadd_pd(x, y, z);
 #elif defined(__FMA__)
