@@ -156,6 +156,17 @@ TEST_P(EverySet, RendersTheForcesOfTheScalarEngine) {
   EXPECT_GT(lanes.count().in_lanes, 1000);
 }
 
+TEST_P(EverySet, GivesUpOnASlowStepAsTheScalarEngineDoes) {
+  const Keystroke fast = test::keystroke("recorded_fast");
+  TickSettings settings = settings_of(1);
+  for (const int limit : {2, 3}) {  // linearisations; the default is reached once in 10000 steps
+    settings.scheme.newton_limit = limit;
+    expect_same(
+        compare({test::grand_action().model}, std::vector<int>(5, 0), spread(fast, 0.7), 0.9, settings, GetParam()),
+        "limit");
+  }
+}
+
 TEST_P(EverySet, KeepsToTheStepBudgetAsTheScalarEngineDoes) {
   const Keystroke forte = test::keystroke("forte");
   // with 5 keys awake no step is split, with one all may be

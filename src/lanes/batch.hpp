@@ -110,7 +110,9 @@ struct DriveNumbers {
 
 /// Part of a Scheme that the lanes look at.
 struct Settings {
-  double time_step, theta, surprise_limit, newton_tolerance, placement_tolerance;
+  double time_step, theta, surprise_limit;
+  int newton_limit;
+  double newton_tolerance, placement_tolerance;
   bool is_friction_recalled;
   int sweep_limit;
   double sweep_tolerance;
@@ -120,7 +122,8 @@ struct Settings {
 /// How the step ended, lane by lane. A lane that is neither taken nor refused is left to the scalar engine.
 struct Outcome {
   bool is_taken[kMaxLanes];
-  bool is_refused[kMaxLanes];  // by the surprise limit
+  bool is_refused[kMaxLanes];   // by the surprise limit
+  bool is_at_limit[kMaxLanes];  // of the linearisations: taken as the best found
   int linearisations[kMaxLanes];
   int sweeps[kMaxLanes];
   unsigned tangents[kMaxLanes];  // bit by bit, in play in the last sweeps; 0 where there were none

@@ -27,6 +27,7 @@ struct LaneScheme {
         settings{s.time_step,
                  s.theta,
                  s.surprise_limit,
+                 s.newton_limit,
                  s.newton_tolerance,
                  s.placement_tolerance,
                  s.is_friction_recalled,
@@ -140,7 +141,9 @@ void LanePlayer::Band::step_batch(std::span<Player* const> batch, const LaneSche
       step_alone(*batch[l], scheme, next[l]);
       continue;
     }
-    StepReport stepped{outcome.is_taken[l] ? StepStatus::converged : StepStatus::refused,
+    StepReport stepped{!outcome.is_taken[l]     ? StepStatus::refused
+                       : outcome.is_at_limit[l] ? StepStatus::not_converged
+                                                : StepStatus::converged,
                        outcome.linearisations[l],
                        outcome.sweeps[l],
                        outcome.newton_change[l],

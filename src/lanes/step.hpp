@@ -9,9 +9,6 @@
 
 namespace erard::lanes {
 
-/// More linearisations than this, one step in a thousand needs them, are left to the scalar engine.
-inline constexpr int kMostLinearisations = 4;
-
 template <typename T>
 void predict(const Batch& batch, Work<T>& work) noexcept {
   const Plan& plan = *batch.plan;
@@ -112,6 +109,7 @@ Mask<T> find_end(const Batch& batch, Work<T>& work) noexcept {
   bool is_converged[kMaxLanes] = {};
   Sweeps<T> sweeps;
   Mask<T> is_active = Mask<T>::load_unaligned(batch.is_used), is_done(false);
+  is_done.store_unaligned(outcome.is_at_limit);
   predict(batch, work);
   place_middle(batch, is_active, work);
   for (int count = 1; any(is_active); ++count) {
@@ -127,12 +125,14 @@ Mask<T> find_end(const Batch& batch, Work<T>& work) noexcept {
       moved.acceleration.store_unaligned(outcome.surprise);
     }
     const Mask<T> is_placed = moved.since_placed <= T(settings.placement_tolerance);
-    const Mask<T> ends = is_active & !is_refused & is_placed & (moved.last <= T(settings.newton_tolerance));
+    const Mask<T> is_near = is_placed & (moved.last <= T(settings.newton_tolerance));
+    const bool is_last = count == settings.newton_limit;
+    const Mask<T> ends = is_active & !is_refused & (is_near | Mask<T>(is_last));
+    if (is_last) (ends & !is_near).store_unaligned(outcome.is_at_limit);
     report(ends | is_refused, is_sliding, count, moved.last, sweeps, outcome, is_converged);
     if (any(ends)) keep(*batch.plan, ends, work);
     is_done = is_done | ends;
     is_active = is_active & !ends & !is_refused;
-    if (count == kMostLinearisations) break;
     if (any(is_active & !is_placed)) place_middle(batch, is_active & !is_placed, work);
   }
   return is_done & Mask<T>::load_unaligned(is_converged);

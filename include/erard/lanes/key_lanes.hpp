@@ -12,7 +12,7 @@
 namespace erard {
 
 /// Plays turns as erard::tick() does, with the same bits: what lanes would round otherwise is left to the scalar code, and
-/// a lane that is not done after four linearisations is stepped by it anew.
+/// a lane whose sweeps do not converge is stepped by it anew.
 ///
 /// Keys of one structure (bodies, contacts, rows) share batches, whatever their numbers. Stepped one by one are mechanisms
 /// with felt bodies or contacts without felt, and the drive `key`. Once built: no heap, no exceptions, no locks. One thread
