@@ -106,6 +106,14 @@ bool is_too_close_for(double way, const test::RecordedSession& session, const te
   return true;
 }
 
+/// Under the address sanitizer steps at impacts take longer than periods: the host pauses by itself, and whether it was
+/// disturbed cannot be told. What is checked in all cases is that it stays safe and comes back.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kIsSlow = true;
+#else
+constexpr bool kIsSlow = false;
+#endif
+
 TEST_P(HostInputAtEitherPace, AMomentaryJumpIsNotBelieved) {
   constexpr double kWay = 5e-3;  // [m]
   // Where the machine keeps device or host waiting for 1.7 ms, 5 mm are no jump but a quick motion: then once more.
@@ -121,6 +129,7 @@ TEST_P(HostInputAtEitherPace, AMomentaryJumpIsNotBelieved) {
         [&] { return device_->status().dropped_implausible_speed > before + 8; });
     trust_the_finger();
     finish({Fault::implausible_speed});
+    if (kIsSlow) return;
     if (!is_too_close_for(kWay, session_, window_)) continue;
     expect_undisturbed();
     return;
